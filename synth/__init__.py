@@ -1,0 +1,76 @@
+"""Topology synthesis for malleable robots: from target points to a verified link shape and a guide.
+
+    import synth
+
+    solution = synth.solve(synth.load_task("task.yaml"))
+    solution.found, solution.targets[0].miss, solution.robot.inverse_kinematics(point)
+
+Everything is in metres and radians. Names are imported when they are first used, so that the command
+line answers at once.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING
+
+from synth.version import __version__
+
+if TYPE_CHECKING:
+    from synth.errors import GeometryError, InputError, Mistake, SolverError, SynthError
+    from synth.export import solution_to_json, write_files
+    from synth.guide import Guide, make_guide
+    from synth.robot import PRESETS, Arm, BasePose, LinkShape, Robot
+    from synth.synthesis import NotFoundError, Solution, Status, solve, verify
+    from synth.task import Objective, PointTarget, Task, Topology, load_robot, load_task, parse_task
+
+_ROOMS = {
+    "errors": ("GeometryError", "InputError", "Mistake", "SolverError", "SynthError"),
+    "export": ("solution_to_json", "write_files"),
+    "guide": ("Guide", "make_guide"),
+    "robot": ("PRESETS", "Arm", "BasePose", "LinkShape", "Robot"),
+    "synthesis": ("NotFoundError", "Solution", "Status", "solve", "verify"),
+    "task": ("Objective", "PointTarget", "Task", "Topology", "load_robot", "load_task", "parse_task"),
+}
+_ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
+
+__all__ = [
+    "PRESETS",
+    "Arm",
+    "BasePose",
+    "GeometryError",
+    "Guide",
+    "InputError",
+    "LinkShape",
+    "Mistake",
+    "NotFoundError",
+    "Objective",
+    "PointTarget",
+    "Robot",
+    "Solution",
+    "SolverError",
+    "Status",
+    "SynthError",
+    "Task",
+    "Topology",
+    "__version__",
+    "load_robot",
+    "load_task",
+    "make_guide",
+    "parse_task",
+    "solution_to_json",
+    "solve",
+    "verify",
+    "write_files",
+]
+
+
+def __getattr__(name: str) -> object:
+    """Import a public name from its room on first use (PEP 562)."""
+    if name not in _ROOM_OF:
+        raise AttributeError(f"module 'synth' has no attribute {name!r}")
+    return getattr(importlib.import_module(f"synth.{_ROOM_OF[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

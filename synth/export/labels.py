@@ -1,0 +1,107 @@
+"""Labels in a drawing that cover neither each other nor what is drawn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from synth.arrays import FloatArray
+
+FONT_SIZE = 6.5  # pt
+_MM_PER_POINT = 25.4 / 72.0
+_CHARACTER = 0.62 * FONT_SIZE * _MM_PER_POINT  # mm, the width of one, generously
+_HEIGHT = 1.15 * FONT_SIZE * _MM_PER_POINT  # mm
+# Where a label is tried: this far from its point on paper, mm, in this many directions.
+_DISTANCES = (2.6, 4.2, 6.5, 9.5)
+_DIRECTIONS = 24
+_LEADER_FROM = 3.0  # mm; a label farther from its point is joined to it by a line
+
+
+@dataclass
+class Labels:
+    """The labels of one drawing, placed all at once when everything else is drawn.
+
+    Attributes:
+        axes: Where to write; its limits and its place on the page must be final.
+        scale: How many units of the axes are one millimetre of paper.
+    """
+
+    axes: Axes
+    scale: float
+    _wanted: list[tuple[str, FloatArray]] = field(default_factory=list)
+    _lines: list[FloatArray] = field(default_factory=list)
+    _marks: list[FloatArray] = field(default_factory=list)
+
+    def avoid_mark(self, point: FloatArray) -> None:
+        """Keep labels off the mark that is drawn at a point, shape (2,)."""
+        self._marks.append(np.asarray(point) / self.scale)
+
+    def avoid_line(self, points: FloatArray) -> None:
+        """Keep labels off the line through points, shape (k, 2)."""
+        for start, end in pairwise(points):
+            count = int(np.linalg.norm(end - start) / self.scale) + 2
+            line = start + np.linspace(0.0, 1.0, count)[:, None] * (end - start)
+            self._lines.append(line / self.scale)
+
+    def add(self, text: str, point: FloatArray) -> None:
+        """Name a point, shape (2,), of the drawing."""
+        self._wanted.append((text, np.asarray(point) / self.scale))
+        self.avoid_mark(point)
+
+    def place(self) -> None:
+        """Write the labels, each where it covers least: a greedy choice, in the order they came."""
+        frame = np.array([self.axes.get_xlim(), self.axes.get_ylim()]) / self.scale
+        drawn = _Drawn(np.vstack([np.zeros((0, 2)), *self._lines]), np.array(self._marks), frame)
+        for text, point in self._wanted:
+            half = 0.5 * np.array([_CHARACTER * len(text), _HEIGHT])
+            places = _candidates(point, half)
+            costs = [drawn.cost(place, half) + 0.2 * float(np.linalg.norm(place - point)) for place in places]
+            centre = places[int(np.argmin(costs))]
+            drawn.boxes.append((centre, half))
+            far = np.linalg.norm((centre - point) / (half + _LEADER_FROM), ord=np.inf) > 1.0
+            self.axes.annotate(
+                text,
+                tuple(point * self.scale),
+                tuple(centre * self.scale),
+                fontsize=FONT_SIZE,
+                ha="center",
+                va="center_baseline",
+                zorder=9,
+                bbox={"boxstyle": "square,pad=0.05", "facecolor": "white", "edgecolor": "none", "alpha": 0.8},
+                arrowprops={"arrowstyle": "-", "linewidth": 0.4, "shrinkA": 0.0, "shrinkB": 1.5}
+                if far
+                else None,
+            )
+
+
+@dataclass
+class _Drawn:
+    """What is on the paper: points along lines, marks, the frame, and the labels so far; in mm."""
+
+    lines: FloatArray
+    marks: FloatArray
+    frame: FloatArray
+    boxes: list[tuple[FloatArray, FloatArray]] = field(default_factory=list)
+
+    def cost(self, centre: FloatArray, half: FloatArray) -> float:
+        """Return how bad a place is for a label: first what it hides, then where it leaves the frame."""
+        labels = sum(bool(np.all(np.abs(centre - other) < half + size + 0.2)) for other, size in self.boxes)
+        marks = int(np.all(np.abs(self.marks - centre) < half + 0.9, axis=1).sum())
+        lines = int(np.all(np.abs(self.lines - centre) < half + 0.4, axis=1).sum())
+        outside = np.any(centre - half < self.frame[:, 0] + 0.5) or np.any(
+            centre + half > self.frame[:, 1] - 0.5
+        )
+        return 100.0 * (labels + bool(outside)) + 10.0 * marks + 1.0 * lines
+
+
+def _candidates(point: FloatArray, half: FloatArray) -> list[FloatArray]:
+    """Return centres of a label's box, half its size away from `point` and a little more."""
+    angles = 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS + 0.25 * np.pi
+    around = np.column_stack([np.cos(angles), np.sin(angles)])
+    return [point + direction * (half + reach - _HEIGHT / 2) for reach in _DISTANCES for direction in around]

@@ -1,0 +1,219 @@
+"""The circle that P5 runs on about axis 2: swept about axis 1 it is the workspace surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from synth.arrays import FloatArray, frozen
+from synth.errors import GeometryError
+from synth.geometry.distances import ArmDistances, realise, squared_distances
+from synth.geometry.gamma import WorkspaceSurface
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+# Nine samples would do for a trigonometric polynomial of degree 4; a power of two is as cheap.
+_AROUND = 2.0 * np.pi / 16.0 * np.arange(16)
+_DEGREE = 4
+# Half-widths of the first search, rad: a fourfold root, at the rim of a sphere or plane, is known to
+# 3e-3, and between neighbours of _AROUND lies all that the roots may have missed.
+_WIDTHS = np.repeat([0.02, np.pi / 16.0], [2 * _DEGREE, 16])
+_ZOOM = np.linspace(-1.0, 1.0, 17)
+
+
+@dataclass(frozen=True)
+class SweptCircle:
+    """Axis 2 and the circle of P5 about it, in the base frame (axis 1 is z, P1 the origin).
+
+    It holds what a shape of the arm means for its workspace, wherever P3 and P4 are marked on axis 2.
+
+    Attributes:
+        centre: Centre c of the circle, a point of axis 2, shape (3,), m.
+        axis: Direction u of axis 2, from P3 towards P4, shape (3,); stored with length 1.
+        radius: Radius R of the circle, m.
+
+    Raises:
+        GeometryError: If the axis has no direction or the radius is negative.
+    """
+
+    centre: FloatArray
+    axis: FloatArray
+    radius: float
+
+    def __post_init__(self) -> None:
+        length = float(np.linalg.norm(self.axis))
+        if not (length > 0.0 and self.radius >= 0.0):
+            raise GeometryError("A circle needs an axis that is not zero and a radius that is not negative.")
+        object.__setattr__(self, "centre", frozen(self.centre))
+        object.__setattr__(self, "axis", frozen(np.asarray(self.axis) / length))
+
+    @classmethod
+    def from_points(cls, points: ArrayLike) -> SweptCircle:
+        """Return the circle of P5 about the line from P3 to P4.
+
+        Args:
+            points: P1, ..., P5 in the base frame, shape (5, 3), m; or only the last three of them.
+        """
+        p3, p4, p5 = np.asarray(points, dtype=np.float64)[-3:]
+        span = p4 - p3
+        centre = p3 + span * np.dot(p5 - p3, span) / max(np.dot(span, span), np.finfo(np.float64).tiny)
+        return cls(centre, span, float(np.linalg.norm(p5 - centre)))
+
+    @classmethod
+    def from_squared_distances(cls, distances: ArmDistances, *, chirality: Literal[1, -1] = 1) -> SweptCircle:
+        """Return the circle of the arm with these squared distances; P3 stands as in `realise`.
+
+        With P3 at the distance l = (s35 - s45 + s34) / (2 d34) before the centre, R^2 = s35 - l^2.
+
+        Args:
+            distances: The squared distances of the arm, m^2.
+            chirality: Sign of the orientation of (P1, P2, P3, P4), which distances leave open.
+
+        Raises:
+            GeometryError: If no points in space have these distances or an axis has no direction.
+        """
+        s34, s35, s45 = distances.s34, distances.s35, distances.s45
+        if not (distances.s12 > 0.0 and s34 > 0.0):
+            raise GeometryError("P1 and P2, or P3 and P4, coincide: their axis has no direction.")
+        offset = (s35 - s45 + s34) / (2.0 * np.sqrt(s34))
+        realise(distances.matrix(0.0, 0.0)[2:, 2:])  # refuses a triangle P3, P4, P5 that does not close
+        p3, p4 = realise(distances.axis_matrix, chirality=chirality)[2:]
+        axis = (p4 - p3) / np.linalg.norm(p4 - p3)
+        return cls(p3 + offset * axis, axis, float(np.sqrt(max(s35 - offset**2, 0.0))))
+
+    @property
+    def moment(self) -> float:
+        """Mutual moment of the axes, (z x c) . u = +-a sin(alpha), m.
+
+        It is 0 where they are parallel or meet, and has the sign of the orientation of (P1, P2, P3, P4).
+        """
+        return float(self.centre[0] * self.axis[1] - self.centre[1] * self.axis[0])
+
+    def axis_points(self, d34: float, offset: float) -> FloatArray:
+        """Return P3 and P4, shape (2, 3), m: the points of axis 2 to be marked.
+
+        Args:
+            d34: Distance of P3 and P4, m.
+            offset: From P3 to the centre of the circle along the axis, m; negative if P3 lies beyond.
+        """
+        return np.asarray(self.centre + np.outer([-offset, d34 - offset], self.axis))
+
+    def squared_distances(self, d12: float, d34: float, offset: float) -> ArmDistances:
+        """Return the squared distances of the arm, m^2, with P1, ..., P4 marked on the axes.
+
+        Args:
+            d12: Distance of P1 and P2, m.
+            d34: Distance of P3 and P4, m.
+            offset: From P3 to the centre of the circle along the axis, m.
+        """
+        axis_1 = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, d12]])
+        s = squared_distances(np.concatenate([axis_1, self.axis_points(d34, offset)]))
+        s35, s45 = (self.radius**2 + along**2 for along in (offset, d34 - offset))
+        s12, s13, s14, s23, s24, s34 = s[np.triu_indices(4, k=1)].tolist()
+        return ArmDistances(s12, s13, s14, s23, s24, s34, s35, s45)
+
+    def surface(self, d12: float, d34: float) -> WorkspaceSurface:
+        """Return the surface that the circle sweeps about axis 1.
+
+        With N' = N - |c|^2 - R^2, z' = z - c_z and _|_ for the part perpendicular to u, the vector
+        w = N' z_|_ - 2 z' c_|_ runs round a circle of radius 2 R |moment| as P5 runs round its own:
+
+            Gamma = -(s12 s34 / 4) (|w|^2 - 4 R^2 moment^2).
+
+        So Gamma is minus a square wherever the moment is 0. Nothing is divided by sin(alpha), so that q is
+        finite for every arm. d12 and d34 only scale Gamma: by d12 d34 = 2 the factor becomes -1.
+
+        Args:
+            d12: Distance of P1 and P2, m.
+            d34: Distance of P3 and P4, m.
+        """
+        z_part = _part_across(self.axis, np.array([0.0, 0.0, 1.0]))
+        c_part = _part_across(self.axis, self.centre)
+        n_centre = float(np.dot(self.centre, self.centre)) + self.radius**2
+        constant = 2.0 * self.centre[2] * c_part - n_centre * z_part
+        q2 = 2.0 * np.dot(z_part, constant)
+        q = [
+            np.dot(z_part, z_part),
+            -4.0 * np.dot(z_part, c_part) / d12,
+            q2,
+            q2 + 4.0 * np.dot(c_part, c_part),
+            -4.0 * np.dot(c_part, constant) / d12,
+            np.dot(constant, constant) - 4.0 * (self.radius * self.moment) ** 2,
+        ]
+        return WorkspaceSurface(d12, -((0.5 * d12 * d34) ** 2) * np.array(q))
+
+    def points(self, angles: ArrayLike) -> FloatArray:
+        """Return points of the circle, shape (..., 3), m, at angles, shape (...), rad, about u.
+
+        Angle 0 is where the circle reaches out along the coordinate axis most nearly across u: an
+        arbitrary choice, not the zero of joint 2.
+        """
+        start = _part_across(self.axis, np.eye(3)[np.argmin(np.abs(self.axis))])
+        start /= np.linalg.norm(start)
+        angles = np.asarray(angles, dtype=np.float64)[..., None]
+        across = np.cos(angles) * start + np.sin(angles) * np.cross(self.axis, start)
+        return np.asarray(self.centre + self.radius * across)
+
+    def distance(self, points: ArrayLike) -> FloatArray:
+        """Return the distance from points to the swept surface, joint limits aside.
+
+        Joint 1 turns any point into the half-plane (rho, z), where the surface is one closed curve. With
+        A = N(t) / 2 - z z(t) and B = rho(t)^2 along the circle, the squared distance is a constant plus
+        2 A - 2 rho sqrt(B), and stationary only where 4 A'^2 B = (rho B')^2: at roots of a trigonometric
+        polynomial of degree 4, so at no more than eight angles t. The nearest of these is taken.
+        A coarse search beside them is for points where the polynomial vanishes, such as the centre of a
+        circle that lies in a plane with axis 1.
+
+        No Gamma is needed, and so this holds in every category, also beyond the rims where the sphere or
+        the plane ends but Gamma goes on, and for coincident axes, where Gamma vanishes everywhere.
+
+        Args:
+            points: Shape (..., 3), m.
+
+        Returns:
+            Shape (...), m.
+        """
+        x, y, z = np.moveaxis(np.asarray(points, dtype=np.float64), -1, 0)
+        rho, z = np.hypot(x, y)[..., None], z[..., None]
+        roots = self._stationary_angles(rho, z)
+        around = np.broadcast_to(_AROUND, (*roots.shape[:-1], len(_AROUND)))
+        angles, widths = np.concatenate([roots, around], axis=-1), _WIDTHS
+        while widths[-1] > np.finfo(np.float64).eps:
+            nearby = angles[..., None] + widths[:, None] * _ZOOM
+            misses = self._misses(rho[..., None], z[..., None], nearby)
+            best = np.argmin(misses, axis=-1, keepdims=True)
+            angles = np.take_along_axis(nearby, best, axis=-1)[..., 0]
+            widths = widths * (_ZOOM[1] - _ZOOM[0])
+        return np.asarray(np.min(misses, axis=(-2, -1)))
+
+    def _stationary_angles(self, rho: FloatArray, z: FloatArray) -> FloatArray:
+        """Return the angles, shape (..., 8), at which the distance from (rho, z) may be stationary."""
+        p = self.points(_AROUND)
+        dp = self.points(_AROUND + 0.5 * np.pi) - self.centre
+        inner = np.sum(p * dp, axis=-1)
+        da = inner - z * dp[:, 2]
+        b, db = np.sum(p[:, :2] ** 2, axis=-1), 2.0 * (inner - p[:, 2] * dp[:, 2])
+        spectrum = np.fft.fft(4.0 * da**2 * b - (rho * db) ** 2)
+        # In w = exp(i t), times w^4: coefficients of w^0 ... w^8, and the roots as eigenvalues.
+        polynomial = np.roll(spectrum, _DEGREE, axis=-1)[..., : 2 * _DEGREE + 1]
+        # A leading coefficient of zero would send roots to infinity: far away is enough, and milder.
+        leading = polynomial[..., -1:]
+        floor = 1e-10 * np.max(np.abs(polynomial), axis=-1, keepdims=True) + np.finfo(np.float64).tiny
+        leading = np.where(np.abs(leading) < floor, floor, leading)
+        companion = np.zeros((*rho.shape[:-1], 2 * _DEGREE, 2 * _DEGREE), dtype=np.complex128)
+        companion[..., 1:, :-1] = np.eye(2 * _DEGREE - 1)
+        companion[..., -1] = -polynomial[..., :-1] / leading
+        return np.asarray(np.angle(np.linalg.eigvals(companion)))
+
+    def _misses(self, rho: FloatArray, z: FloatArray, angles: ArrayLike) -> FloatArray:
+        """Return the distances in the half-plane from (rho, z) to the points at these angles."""
+        x, y, height = np.moveaxis(self.points(angles), -1, 0)
+        return np.asarray(np.hypot(np.hypot(x, y) - rho, height - z))
+
+
+def _part_across(axis: FloatArray, vector: FloatArray) -> FloatArray:
+    """Return the part of a vector perpendicular to a unit vector, to rounding in the small part."""
+    return np.cross(axis, np.cross(vector, axis))

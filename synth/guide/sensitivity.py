@@ -1,0 +1,123 @@
+"""How precisely a shape must be held: what an error of axis 2 does to the misses of the targets."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.robot import BasePose
+
+if TYPE_CHECKING:
+    from synth.arrays import FloatArray
+    from synth.robot import Arm
+    from synth.synthesis.solution import Design
+    from synth.task import Task
+
+# A miss below this has no direction but that of rounding: the surface's normal takes its place.
+_ON_THE_SURFACE = 1e-6  # m
+_AT_A_LIMIT = 1e-6  # rad
+# Velocities of P5 this nearly parallel are those of the rim of the workspace, which P5 can leave in two
+# directions; on a circle of 0.5 m it begins 0.03 mm inside the rim.
+_NEARLY_SINGULAR = 1e-2
+
+
+@dataclass(frozen=True)
+class ShapeTolerance:
+    """How far axis 2 may be off before a target that is reached now is reached no more.
+
+    Each number is the size of the smallest error that, alone and in its worst direction, brings some
+    target now within its tolerance to the edge of it, with joints 1 and 2 free to make the best of the
+    new shape (near the posture they have now). Both effects are linear to first order, so an error of
+    both kinds is harmless if each is at most half of its number. Both are NaN if no target is within
+    its tolerance.
+
+    Attributes:
+        position: Shift of axis 2, its direction kept, m. No first order here: a shift by d moves the
+            whole workspace surface by d, hence position = min (tolerance - miss).
+        position_target: Name of the target that is lost first, or empty.
+        direction: Tilt of axis 2 about the link's end, rad; to first order.
+        direction_target: Name of the target that is lost first, or empty.
+    """
+
+    position: float = math.nan
+    position_target: str = ""
+    direction: float = math.nan
+    direction_target: str = ""
+
+
+def shape_tolerance(task: Task, design: Design) -> ShapeTolerance:
+    """Return how precisely axis 2 must stand for the targets that a shape reaches.
+
+    Args:
+        task: What is asked.
+        design: The shape and its misses. That the end effector stays above the floor is not counted.
+    """
+    check = design.verification
+    shifts, tilts = [], []
+    for target, joints, miss, within in zip(
+        task.targets, check.joints, check.misses, check.within_tolerance, strict=True
+    ):
+        if within:
+            slack = target.tolerance - float(miss)
+            rate = tilt_rate(design.arm, target.position, joints)
+            shifts.append((slack, target.name))
+            tilts.append((slack / rate if rate > 0.0 else math.inf, target.name))
+    if not shifts:
+        return ShapeTolerance()
+    return ShapeTolerance(*min(shifts), *min(tilts))
+
+
+def tilt_rate(arm: Arm, target: FloatArray, joints: FloatArray) -> float:
+    """Return by how much a target's miss grows with a tilt of axis 2 in the worst direction, m/rad.
+
+    At joint 1 = 0, a tilt w (rad, across axis 2) about the link's end p moves P5 by w x (P5 - p). Of
+    this only the part along the miss counts, n = (P5 - target) / |P5 - target|, because the joints are
+    already where they make the miss least (envelope theorem): d miss / dw = (P5 - p) x n. Where the
+    miss is zero, n may be any unit vector across the velocities that the joints can still give P5: the
+    normal of the surface inside, a half-plane at a joint limit or the rim.
+
+    Args:
+        arm: The robot in its shape.
+        target: The target in the task frame, shape (3,), m.
+        joints: Its joint angles (theta1, theta2) with the least miss, shape (2,), rad.
+
+    Returns:
+        max |(P5 - p) x n . w| over unit tilts w across axis 2 and all such n, m/rad.
+    """
+    theta1, theta2 = float(joints[0]), float(joints[1])
+    end_effector = arm.base.to_base(arm.forward_kinematics(0.0, theta2))
+    # Joint 1 turns about z as the base's yaw does; the target is turned back instead of the arm.
+    away = end_effector - BasePose(yaw=theta1).to_base(arm.base.to_base(target))
+    miss = float(np.linalg.norm(away))
+    normals = away[None] / miss if miss > _ON_THE_SURFACE else _normals(arm, end_effector, theta1, theta2)
+    rotation, end = arm.end_frame
+    tilted = np.cross(rotation[:, 1:].T, end_effector - end)  # about the two directions across axis 2
+    return float(np.linalg.norm(normals @ tilted.T, ord=2))
+
+
+def _normals(arm: Arm, end_effector: FloatArray, theta1: float, theta2: float) -> FloatArray:
+    """Return an orthonormal basis of the directions, at joint 1 = 0, in which no joint can move P5.
+
+    Args:
+        arm: The robot in its shape.
+        end_effector: P5 at theta1 = 0 in the base frame, shape (3,), m.
+        theta1: Angle of joint 1, which tells whether it is at a limit, rad.
+        theta2: Angle of joint 2, rad.
+
+    Returns:
+        The directions, shape (k, 3); k = 1 where the surface is regular and the joints are free.
+    """
+    limits = arm.robot.joint_limits
+    about_axis_1 = np.array([-end_effector[1], end_effector[0], 0.0])
+    about_axis_2 = np.cross(arm.circle.axis, end_effector - arm.circle.centre)
+    velocities = np.stack([about_axis_1, about_axis_2])
+    free = [
+        interval.contains(angle, slack=-_AT_A_LIMIT)
+        for interval, angle in ((limits.base, theta1), (limits.second, theta2))
+    ]
+    _, singular, directions = np.linalg.svd(velocities[free])
+    rank = int(np.sum(singular > _NEARLY_SINGULAR * np.max(singular, initial=0.0)))
+    return np.asarray(directions[rank:])

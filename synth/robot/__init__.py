@@ -1,0 +1,25 @@
+"""The robot: hardware, malleable link, forward and inverse kinematics."""
+
+from synth.robot.arm import Arm, JointBranches
+from synth.robot.base import BasePose
+from synth.robot.hardware import Interval, JointLimits, MalleableLink, RigidLink, Robot
+from synth.robot.kinematics import Kinematics, into_turn
+from synth.robot.link import LinkShape, arc_motion, chain_end
+from synth.robot.presets import PRESETS
+
+__all__ = [
+    "PRESETS",
+    "Arm",
+    "BasePose",
+    "Interval",
+    "JointBranches",
+    "JointLimits",
+    "Kinematics",
+    "LinkShape",
+    "MalleableLink",
+    "RigidLink",
+    "Robot",
+    "arc_motion",
+    "chain_end",
+    "into_turn",
+]

@@ -1,0 +1,171 @@
+"""Forward and inverse kinematics of the two joints, for one shape or for many at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from synth.arrays import FloatArray
+    from synth.robot.hardware import Interval, JointLimits
+
+# Twice the spacing of this grid, about 3 deg, brackets every minimum of the miss over joint 2, a
+# function of few harmonics; the golden section then shrinks the bracket below 1e-8 rad.
+_GRID = 241
+_GOLDEN_STEPS = 36
+_GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
+_NEWTON_STEPS = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Kinematics:
+    """The two joints of shapes whose arrays broadcast: leading axes "..." may be absent.
+
+    All points are in the base frame, m. P5 = Rz(theta1) [c + R (sin(theta2) v - cos(theta2) t)].
+
+    Attributes:
+        frame: Rotation of the link's end at theta1 = 0, columns u, v, t, shape (..., 3, 3): u along
+            axis 2, t along the link, v = t x u.
+        centre: Centre c of the circle of P5 about axis 2, shape (..., 3), m.
+        radius: Its radius R, shape (...), m.
+    """
+
+    frame: FloatArray
+    centre: FloatArray
+    radius: FloatArray
+
+    def forward(self, theta1: ArrayLike, theta2: ArrayLike) -> FloatArray:
+        """Return P5 for joint angles, shape (...), rad; of shape (..., 3), m."""
+        turn, second = np.asarray(theta1, dtype=np.float64), np.asarray(theta2, dtype=np.float64)
+        v, t = self.frame[..., 1], self.frame[..., 2]
+        circle = np.sin(second)[..., None] * v - np.cos(second)[..., None] * t
+        x, y, z = np.moveaxis(self.centre + self.radius[..., None] * circle, -1, 0)
+        cos, sin = np.cos(turn), np.sin(turn)
+        return np.stack(np.broadcast_arrays(cos * x - sin * y, sin * x + cos * y, z), axis=-1)
+
+    def best_theta1(self, theta2: FloatArray, point: FloatArray, limits: Interval) -> FloatArray:
+        """Return the theta1 within its limits that brings P5 closest to a point, theta2 given."""
+        start = self.forward(0.0, theta2)
+        wanted = np.arctan2(point[..., 1], point[..., 0]) - np.arctan2(start[..., 1], start[..., 0])
+        # An angle modulo a turn: into the turn around the interval's middle, then to its nearer end.
+        return np.clip(into_turn(wanted, limits.middle), limits.lower, limits.upper)
+
+    def miss(self, theta2: FloatArray, point: FloatArray, limits: Interval) -> FloatArray:
+        """Return the distance of P5 from a point, theta2 given and joint 1 at its best."""
+        reached = self.forward(self.best_theta1(theta2, point, limits), theta2)
+        return np.asarray(np.linalg.norm(reached - point, axis=-1))
+
+    def branches(self, point: FloatArray) -> FloatArray:
+        """Return both branches of the inverse kinematics in closed form, joint limits aside.
+
+        Height z and squared distance N = |P5|^2 from P1 do not depend on theta1, and are linear in
+        w = (cos theta2, sin theta2): M w = (z - cz, N - |c|^2 - R^2). The singular vectors of M give
+        w up to a sign; where the axes meet or are parallel both signs are solutions, elsewhere one.
+
+        Args:
+            point: Points, shape (..., 3), m. Off the workspace the branches are near its closest point.
+
+        Returns:
+            Pairs (theta1, theta2), shape (..., 2, 2), rad, the branches along the last axis but one.
+        """
+        radius, centre = self.radius[..., None], self.centre
+        across = radius[..., None] * np.stack([-self.frame[..., 2], self.frame[..., 1]], axis=-1)
+        squared = np.einsum("...i,...i", centre, centre)
+        # N is brought to the scale of a length, so that both rows weigh alike.
+        scale = 0.5 / np.sqrt(squared + self.radius**2)
+        by_squared = 2.0 * scale[..., None] * np.einsum("...i,...ij->...j", centre, across)
+        left, singular, right = np.linalg.svd(np.stack([across[..., 2, :], by_squared], axis=-2))
+        height = point[..., 2] - centre[..., 2]
+        beyond = scale * (np.einsum("...i,...i", point, point) - squared - self.radius**2)
+        along = left[..., 0, 0] * height + left[..., 1, 0] * beyond
+        first = np.clip(along / np.maximum(singular[..., 0], 1e-300), -1.0, 1.0)
+        second = np.sqrt(1.0 - first**2)
+        w = np.stack([first, second], axis=-1)[..., None, :] * np.array([[1.0, 1.0], [1.0, -1.0]])
+        w = w @ right
+        theta2 = np.arctan2(w[..., 1], w[..., 0])
+        one = self.each_target()
+        start = one.forward(0.0, theta2)
+        theta1 = np.arctan2(point[..., None, 1], point[..., None, 0]) - np.arctan2(
+            start[..., 1], start[..., 0]
+        )
+        return np.stack([theta1, theta2], axis=-1)
+
+    def polished(self, joints: FloatArray, point: FloatArray) -> FloatArray:
+        """Return joint angles after a few Gauss-Newton steps on the miss; never worse ones.
+
+        They bring back the digits that the square root in `branches` loses near a rim.
+        """
+        best, best_miss = joints, np.full(joints.shape[:-1], np.inf)
+        for _ in range(_NEWTON_STEPS + 1):
+            reached = self.forward(joints[..., 0], joints[..., 1])
+            residual = reached - point
+            miss = np.linalg.norm(residual, axis=-1)
+            better = miss < best_miss
+            best = np.where(better[..., None], joints, best)
+            best_miss = np.where(better, miss, best_miss)
+            by_theta1, by_theta2 = self.velocities(joints, reached)
+            # The 2x2 normal equations; a tiny diagonal keeps singular postures finite.
+            a = np.einsum("...i,...i", by_theta1, by_theta1) + 1e-18
+            b = np.einsum("...i,...i", by_theta1, by_theta2)
+            c = np.einsum("...i,...i", by_theta2, by_theta2) + 1e-18
+            f = np.einsum("...i,...i", by_theta1, residual)
+            g = np.einsum("...i,...i", by_theta2, residual)
+            step = np.stack([c * f - b * g, a * g - b * f], axis=-1)
+            joints = joints - np.clip(step / np.maximum(a * c - b * b, 1e-30)[..., None], -0.5, 0.5)
+        return best
+
+    def velocities(self, joints: FloatArray, reached: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the derivatives of P5 by theta1 and by theta2, shape (..., 3), m.
+
+        Axis 1 sweeps P5 along (-y, x, 0); a quarter turn of joint 2 on is the tangent of its circle.
+
+        Args:
+            joints: Angles (theta1, theta2), shape (..., 2), rad.
+            reached: P5 at these angles, shape (..., 3), m.
+        """
+        by_theta1 = reached[..., [1, 0, 2]] * np.array([-1.0, 1.0, 0.0])
+        opposite = self.forward(joints[..., 0], joints[..., 1] + np.pi)
+        quarter = self.forward(joints[..., 0], joints[..., 1] + 0.5 * np.pi)
+        return by_theta1, quarter - 0.5 * (reached + opposite)
+
+    def each_target(self) -> Kinematics:
+        """Return the same with one more axis behind the leading ones, for the targets."""
+        return Kinematics(self.frame[..., None, :, :], self.centre[..., None, :], self.radius[..., None])
+
+    def closest(self, point: FloatArray, limits: JointLimits) -> tuple[FloatArray, FloatArray]:
+        """Return the joint angles within the limits that come closest to points, and their misses.
+
+        Args:
+            point: Points, shape (..., 3), m; on the workspace or off it.
+            limits: The joint limits.
+
+        Returns:
+            Angles (theta1, theta2), shape (..., 2), rad, and misses, shape (...), m.
+        """
+        one = self.each_target()
+        point = point[..., None, :]
+        second = limits.second
+        grid = np.linspace(second.lower, second.upper, _GRID)
+        best = np.argmin(one.miss(grid, point, limits.base), axis=-1)[..., None]
+        lower, upper = grid[np.maximum(best - 1, 0)], grid[np.minimum(best + 1, _GRID - 1)]
+        for _ in range(_GOLDEN_STEPS):
+            span = _GOLDEN * (upper - lower)
+            left, right = upper - span, lower + span
+            left_is_better = one.miss(left, point, limits.base) < one.miss(right, point, limits.base)
+            lower, upper = np.where(left_is_better, lower, left), np.where(left_is_better, right, upper)
+        # The middle of the bracket is inside it, so that an end of the joint range is tried as well.
+        theta2 = np.concatenate([lower, 0.5 * (lower + upper), upper], axis=-1)
+        misses = one.miss(theta2, point, limits.base)
+        best = np.argmin(misses, axis=-1)[..., None]
+        theta2 = np.take_along_axis(theta2, best, axis=-1)
+        theta1 = one.best_theta1(theta2, point, limits.base)
+        return np.concatenate([theta1, theta2], axis=-1), np.take_along_axis(misses, best, axis=-1)[..., 0]
+
+
+def into_turn(angle: FloatArray, middle: float) -> FloatArray:
+    """Return angles moved by whole turns to within half a turn of `middle`, rad."""
+    return np.asarray(middle + np.remainder(angle - middle + np.pi, 2.0 * np.pi) - np.pi)

@@ -1,0 +1,349 @@
+"""The nonlinear program that polishes a shape, in CasADi: the only module that imports it.
+
+"Gamma passes through the targets" is not written as Gamma = 0. In three of the four categories Gamma
+is a perfect square, so it vanishes together with its gradient and no constraint qualification holds.
+The program is lifted instead: each target keeps its joint angles and its miss as unknowns, tied by
+
+    P5(theta1, theta2; end of the link) - target = miss,
+
+which is the same surface (Gamma = 0 where the miss is zero) and is regular for every shape.
+
+Unknowns, in metres and radians but for the curvatures, which are in units of the largest one:
+
+    curvature   (kx, ky) of each of the equal arcs             2 m
+    length      of the link                                    1
+    s           s13, s14, s23, s24                             4
+    rigid       s35, s45, where the rigid link is free         0 or 2
+    joints      theta1, theta2 of each target                  2 n
+    miss        vector from each target to P5                  3 n
+    worst       largest weighted (miss / tolerance)^2          1, for the minimax objective
+
+Objective: the weighted (miss / tolerance)^2, summed or worst, plus a small multiple of the bending
+energy, which chooses the gentlest among the shapes that miss alike.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import casadi as ca
+import numpy as np
+
+from synth.errors import SolverError
+from synth.robot import Arm, LinkShape
+from synth.task import Objective, Topology
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import ArrayLike
+
+    from synth.arrays import FloatArray
+    from synth.task import Task
+
+# The weight of r * (bending energy) against squared misses in units of the tolerance. It shifts a
+# miss by about 1e-6 of the tolerance: invisible, and yet it settles every free direction.
+_GENTLENESS = 1e-4
+# Curvature 1e-5 / m is straight; it keeps |k| differentiable at zero.
+_STRAIGHT = 1e-10
+# Heights of the link are bounded at this many points of each arc; what dips below the floor between
+# them is seen by the verification and answered by a higher margin.
+_HEIGHTS_PER_ARC = 4
+# An end effector circle smaller than this (squared, m^2) has no second joint worth its name.
+_LEAST_CIRCLE = 1e-6
+# `topology: general` keeps this far from the special categories: twice what still counts as one.
+_GENERAL_DISTANCE = 2e-3
+_GENERAL_ANGLE = math.radians(0.2)
+
+_ANSWERS = frozenset(
+    {
+        "Solve_Succeeded",
+        "Solved_To_Acceptable_Level",
+        "Feasible_Point_Found",
+        "Search_Direction_Becomes_Too_Small",
+        "Maximum_Iterations_Exceeded",
+        "Maximum_WallTime_Exceeded",
+        "User_Requested_Stop",
+        "Infeasible_Problem_Detected",
+        "Restoration_Failed",
+        "Diverging_Iterates",
+    }
+)
+
+
+@dataclass(frozen=True)
+class NlpAnswer:
+    """Where the solver stopped. A claim only: the verification decides what it is worth.
+
+    Attributes:
+        arm: The robot in the shape found.
+        joints: Its joint angles for each target, shape (n, 2), rad.
+        status: The solver's own word for how it ended.
+        iterations: How many iterations it took.
+    """
+
+    arm: Arm
+    joints: FloatArray
+    status: str
+    iterations: int
+
+
+@dataclass
+class _Block:
+    """A named group of unknowns or constraints with its bounds."""
+
+    expressions: list[ca.SX] = field(default_factory=list)
+    lower: list[FloatArray] = field(default_factory=list)
+    upper: list[FloatArray] = field(default_factory=list)
+
+    def add(self, expression: ca.SX, lower: float, upper: float) -> ca.SX:
+        count = expression.numel()
+        self.expressions.append(ca.vec(expression))
+        self.lower.append(np.full(count, lower))
+        self.upper.append(np.full(count, upper))
+        return expression
+
+    def unknown(self, name: str, shape: tuple[int, int], lower: float, upper: float) -> ca.SX:
+        return self.add(ca.SX.sym(name, *shape), lower, upper)
+
+
+class SynthesisNlp:
+    """The program of one task, built once and solved from many starts.
+
+    Args:
+        task: The task.
+        arcs: Number m of equal arcs of the link.
+        stop: Asked once an iteration; when it says yes, the solver ends with what it has.
+        floor_margin: Height added to the floor, m.
+    """
+
+    def __init__(
+        self, task: Task, arcs: int, stop: Callable[[], bool] | None = None, floor_margin: float = 0.0
+    ) -> None:
+        self._task = task
+        self._arcs = arcs
+        robot, count = task.robot, len(task.targets)
+        self._x, self._g = _Block(), _Block()
+        x = self._x
+
+        curvature = x.unknown("curvature", (2, arcs), -1.0, 1.0)
+        length = x.unknown("length", (1, 1), robot.link.length.lower, robot.link.length.upper)
+        self._floor = -math.inf if task.floor is None else task.floor + floor_margin
+        position, frame = self._link_end(curvature, length)
+        u, v, t = frame[:, 0], frame[:, 1], frame[:, 2]
+        p3 = position - robot.tip_offset * u
+        p4 = p3 + robot.d34 * u
+
+        s = x.unknown("s", (4, 1), 0.0, math.inf)
+        p1, p2 = ca.DM.zeros(3), ca.DM([0.0, 0.0, robot.d12])
+        ends = ((p1, p3), (p1, p4), (p2, p3), (p2, p4))
+        self._equal(s - ca.vertcat(*(ca.sumsqr(b - a) for a, b in ends)))
+        for point in (p3, p4):
+            self._above_floor(point[2])
+        self._ask_for_topology(position, u, v, t)
+
+        offset, radius = self._end_effector_circle()
+        centre = position + offset * u
+        base, second = robot.joint_limits.base, robot.joint_limits.second
+        theta1 = x.unknown("theta1", (count, 1), base.lower, base.upper)
+        theta2 = x.unknown("theta2", (count, 1), second.lower, second.upper)
+        miss = x.unknown("miss", (count, 3), -math.inf, math.inf)
+        px, py, pz = (
+            centre[axis] + radius * (ca.sin(theta2) * v[axis] - ca.cos(theta2) * t[axis]) for axis in range(3)
+        )
+        reached = ca.horzcat(
+            ca.cos(theta1) * px - ca.sin(theta1) * py, ca.sin(theta1) * px + ca.cos(theta1) * py, pz
+        )
+        self._equal(reached - ca.DM(task.positions) - miss)
+        self._above_floor(pz)
+
+        weighted = ca.sum2(miss**2) * ca.DM(task.weights / task.tolerances**2)
+        if task.objective is Objective.MINIMAX:
+            misses = x.unknown("worst", (1, 1), 0.0, math.inf)
+            self._g.add(weighted - misses, -math.inf, 0.0)
+        else:
+            misses = ca.sum1(weighted)
+        bending_energy = ca.sumsqr(curvature) * length / (arcs * robot.link.min_bend_radius)
+        self._solver = self._build(misses + _GENTLENESS * bending_energy, stop)
+
+    def solve(self, start: Arm, joints: FloatArray) -> NlpAnswer:
+        """Polish a shape.
+
+        Args:
+            start: The robot in a shape of `arcs` equal arcs.
+            joints: Joint angles for each target to start from, shape (n, 2), rad.
+
+        Returns:
+            Where the solver stopped, whether or not that is any good.
+
+        Raises:
+            SolverError: The solver broke down without an answer.
+            KeyboardInterrupt: The user interrupted the solver (which swallows the exception).
+        """
+        x = self._solver(
+            x0=self._pack(start, joints),
+            lbx=np.concatenate(self._x.lower),
+            ubx=np.concatenate(self._x.upper),
+            lbg=np.concatenate(self._g.lower),
+            ubg=np.concatenate(self._g.upper),
+        )["x"]
+        statistics = self._solver.stats()
+        status = str(statistics["return_status"])
+        if status == "NonIpopt_Exception_Thrown":
+            raise KeyboardInterrupt
+        values = np.asarray(x.full()).ravel()
+        if status not in _ANSWERS or not np.isfinite(values).all():
+            raise SolverError(f"Ipopt ended with {status}")
+        arm, found_joints = self._unpack(values)
+        return NlpAnswer(arm, found_joints, status, int(statistics["iter_count"]))
+
+    def _build(self, objective: ca.SX, stop: Callable[[], bool] | None) -> ca.Function:
+        x, g = ca.vertcat(*self._x.expressions), ca.vertcat(*self._g.expressions)
+        options: dict[str, Any] = {
+            "print_time": False,
+            "ipopt.print_level": 0,
+            "ipopt.sb": "yes",
+            "ipopt.linear_solver": "mumps",
+            "ipopt.max_iter": 300,
+            "ipopt.tol": 1e-8,
+            "ipopt.constr_viol_tol": 1e-9,
+        }
+        if stop is not None:
+            # The solver keeps no reference to its callback: this object must.
+            self._watch = _Watch(x.numel(), g.numel(), stop)
+            options["iteration_callback"] = self._watch
+        return ca.nlpsol("synthesis", "ipopt", {"x": x, "f": objective, "g": g}, options)
+
+    def _equal(self, expression: ca.SX) -> None:
+        self._g.add(expression, 0.0, 0.0)
+
+    def _above_floor(self, height: ca.SX) -> None:
+        if self._floor > -math.inf:
+            self._g.add(height, self._floor, math.inf)
+
+    def _link_end(self, curvature: ca.SX, length: ca.SX) -> tuple[ca.SX, ca.SX]:
+        """Follow the arcs from P2 to the link's end, under the limits of bending and the floor."""
+        link = self._task.robot.link
+        position: ca.SX = ca.SX([0.0, 0.0, self._task.robot.d12])
+        frame: ca.SX = ca.SX.eye(3)
+        arc_length, total_bend = length / self._arcs, ca.SX(0.0)
+        for arc in range(self._arcs):
+            kx, ky = curvature[0, arc] * link.max_curvature, curvature[1, arc] * link.max_curvature
+            bend = ca.sqrt(kx**2 + ky**2 + _STRAIGHT)
+            for part in range(1, _HEIGHTS_PER_ARC + 1):
+                turn = bend * arc_length * part / _HEIGHTS_PER_ARC
+                sine, versine = ca.sin(turn) / bend, 2.0 * (ca.sin(0.5 * turn) / bend) ** 2
+                point = position + frame @ ca.vertcat(kx * versine, ky * versine, sine)
+                self._above_floor(point[2])
+            turned = ca.vertcat(
+                ca.horzcat(1.0 - kx**2 * versine, -kx * ky * versine, kx * sine),
+                ca.horzcat(-kx * ky * versine, 1.0 - ky**2 * versine, ky * sine),
+                ca.horzcat(-kx * sine, -ky * sine, ca.cos(turn)),
+            )
+            position, frame = point, frame @ turned
+            self._g.add(ca.sumsqr(curvature[:, arc]), -math.inf, 1.0)
+            total_bend += turn
+        if link.max_total_bend < math.inf:
+            self._g.add(total_bend, -math.inf, link.max_total_bend)
+        return position, frame
+
+    def _end_effector_circle(self) -> tuple[ca.SX, ca.SX]:
+        """Return offset along axis 2 and radius of P5's circle; free rigid links get s35 and s45."""
+        robot, rigid = self._task.robot, self._task.robot.rigid_link
+        if rigid.is_fixed:
+            offset, radius = robot.end_effector_circle(rigid.d35.lower, rigid.d45.lower)
+            return ca.SX(offset), ca.SX(radius)
+        s35 = self._x.unknown("s35", (1, 1), rigid.d35.lower**2, rigid.d35.upper**2)
+        s45 = self._x.unknown("s45", (1, 1), rigid.d45.lower**2, rigid.d45.upper**2)
+        from_p3 = (s35 - s45 + robot.d34**2) / (2.0 * robot.d34)
+        squared_radius = self._g.add(s35 - from_p3**2, _LEAST_CIRCLE, math.inf)
+        return from_p3 - robot.tip_offset, ca.sqrt(squared_radius)
+
+    def _ask_for_topology(self, position: ca.SX, u: ca.SX, v: ca.SX, t: ca.SX) -> None:
+        """Constrain the axes: two regular equations for each special category."""
+
+        def from_axis_2(point: ca.DM) -> ca.SX:
+            return ca.vertcat(ca.dot(position - point, v), ca.dot(position - point, t))
+
+        p1, p2 = ca.DM.zeros(3), ca.DM([0.0, 0.0, self._task.robot.d12])
+        match self._task.topology:
+            case Topology.SPHERICAL:
+                self._equal(from_axis_2(p1))
+            case Topology.PUMA:
+                self._equal(from_axis_2(p2))
+            case Topology.SCARA:
+                self._equal(u[:2])
+            case Topology.GENERAL:
+                for point in (p1, p2):
+                    self._g.add(ca.sumsqr(from_axis_2(point)), _GENERAL_DISTANCE**2, math.inf)
+                self._g.add(ca.sumsqr(u[:2]), math.sin(_GENERAL_ANGLE) ** 2, math.inf)
+            case Topology.ANY:
+                pass
+
+    def _pack(self, arm: Arm, joints: FloatArray) -> FloatArray:
+        """Return the unknowns of a shape, in the order in which they were made."""
+        task = self._task
+        radius = task.robot.link.min_bend_radius
+        misses = arm.base.to_base(arm.forward_kinematics(joints[:, 0], joints[:, 1])) - task.positions
+        squared = arm.squared_distances
+        parts: list[ArrayLike] = [
+            (arm.shape.curvatures * radius).ravel(),
+            [arm.shape.length],
+            squared[[0, 0, 1, 1], [2, 3, 2, 3]],
+            [] if task.robot.rigid_link.is_fixed else [arm.d35**2, arm.d45**2],
+            joints.T.ravel(),
+            misses.T.ravel(),
+        ]
+        if task.objective is Objective.MINIMAX:
+            worst = np.max(task.weights * (np.linalg.norm(misses, axis=1) / task.tolerances) ** 2)
+            parts.append([worst])
+        return np.concatenate([np.asarray(part, dtype=np.float64) for part in parts])
+
+    def _unpack(self, values: FloatArray) -> tuple[Arm, FloatArray]:
+        """Return the shape that the unknowns describe, rounded into the bounds of the hardware."""
+        task, arcs = self._task, self._arcs
+        robot, rigid = task.robot, task.robot.rigid_link
+        curvature, rest = values[: 2 * arcs].reshape(arcs, 2), values[2 * arcs :]
+        # The solver may overstep a bound by its own tolerance, 1e-8.
+        curvature = curvature / np.maximum(1.0, np.linalg.norm(curvature, axis=1))[:, None]
+        length = float(np.clip(rest[0], robot.link.length.lower, robot.link.length.upper))
+        shape = LinkShape(curvature * robot.link.max_curvature, np.full(arcs, length / arcs))
+        rest = rest[5:]
+        d35, d45 = rigid.d35.lower, rigid.d45.lower
+        if not rigid.is_fixed:
+            d35 = float(np.clip(math.sqrt(rest[0]), rigid.d35.lower, rigid.d35.upper))
+            d45 = float(np.clip(math.sqrt(rest[1]), rigid.d45.lower, rigid.d45.upper))
+            rest = rest[2:]
+        limits = robot.joint_limits
+        joints = rest[: 2 * len(task.targets)].reshape(2, -1).T
+        joints = np.clip(
+            joints, [limits.base.lower, limits.second.lower], [limits.base.upper, limits.second.upper]
+        )
+        return Arm(robot, shape, d35, d45, task.base), joints
+
+
+class _Watch(ca.Callback):
+    """Asked by Ipopt once an iteration whether to go on."""
+
+    def __init__(self, unknowns: int, constraints: int, stop: Callable[[], bool]) -> None:
+        ca.Callback.__init__(self)
+        self._rows = {"x": unknowns, "lam_x": unknowns, "f": 1, "g": constraints, "lam_g": constraints}
+        self._stop = stop
+        self.construct("watch", {})
+
+    def get_n_in(self) -> int:
+        return int(ca.nlpsol_n_out())
+
+    def get_n_out(self) -> int:
+        return 1
+
+    def get_name_in(self, index: int) -> str:
+        return str(ca.nlpsol_out(index))
+
+    def get_sparsity_in(self, index: int) -> ca.Sparsity:
+        return ca.Sparsity.dense(self._rows.get(ca.nlpsol_out(index), 0), 1)
+
+    def eval(self, _arguments: Sequence[ca.DM]) -> list[int]:
+        return [int(self._stop())]

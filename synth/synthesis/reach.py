@@ -1,0 +1,63 @@
+"""Proofs that a target cannot be reached by any shape: short, certain, and far from complete."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from synth.robot import Robot
+    from synth.task import Task
+
+
+def longest_rigid_link(robot: Robot) -> float:
+    """Return the largest distance from the link's end to the end effector, m.
+
+    The link's end divides P3P4 at lambda = tip_offset / d34, so by Stewart's theorem
+    |P5 - p|^2 = (1 - lambda) s35 + lambda s45 - lambda (1 - lambda) s34: linear in s35 and s45, hence
+    largest at an end of each interval.
+
+    Args:
+        robot: The hardware.
+    """
+    part = robot.tip_offset / robot.d34
+    d35, d45 = robot.rigid_link.d35, robot.rigid_link.d45
+    squared = max(
+        (1.0 - part) * a**2 + part * b**2 - part * (1.0 - part) * robot.d34**2
+        for a in (d35.lower, d35.upper)
+        for b in (d45.lower, d45.upper)
+    )
+    return math.sqrt(max(squared, 0.0))
+
+
+def why_impossible(task: Task) -> tuple[str, ...]:
+    """Return the reasons for which no shape at all can do the task; none does not mean it can.
+
+    The end effector is at most (longest link) + (longest rigid link) from P2, by the triangle
+    inequality, and neither it nor P2, where the link starts, may be below the floor.
+
+    Args:
+        task: The task.
+
+    Returns:
+        One sentence for each target or limit that makes the task impossible.
+    """
+    reach = task.robot.link.length.upper + longest_rigid_link(task.robot)
+    reasons = []
+    if task.floor is not None and task.floor > task.robot.d12:
+        reasons.append(f"the link starts at P2, {1e3 * (task.floor - task.robot.d12):.1f} mm below the floor")
+    for target, position in zip(task.targets, task.positions, strict=True):
+        distance = float(np.linalg.norm(position - [0.0, 0.0, task.robot.d12]))
+        if distance > reach + target.tolerance:
+            reasons.append(
+                f"{target.name} is {1e3 * distance:.1f} mm from P2, and the arm reaches at most "
+                f"{1e3 * reach:.1f} mm: it misses by at least {1e3 * (distance - reach):.1f} mm"
+            )
+        elif task.floor is not None and position[2] < task.floor - target.tolerance:
+            reasons.append(
+                f"{target.name} is {1e3 * (task.floor - position[2]):.1f} mm below the floor, and the "
+                "end effector stays above it"
+            )
+    return tuple(reasons)

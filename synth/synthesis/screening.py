@@ -1,0 +1,142 @@
+"""Start points: many random shapes that the link can take, ranked by how near they pass the targets.
+
+A local solver from a random shape finds the best one rarely; from the best of many random shapes it
+finds it nearly always, and looking at a shape is ten thousand times cheaper than polishing it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.robot import Arm, into_turn
+from synth.synthesis.population import Population
+from synth.synthesis.refinement import category_offsets, refine, relative_weights
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from synth.arrays import FloatArray
+    from synth.task import Task
+
+_POPULATION = 200_000
+_SHORTLIST = 4000
+_REFINED = 400
+# Misses are only compared up to here, m: beyond, a shape is far off and by how much says little.
+_FAR = 0.3
+# Starts whose link ends are nearer than this, m, count as one, an axis 1 rad apart for _ARM_LENGTH.
+_DISTINCT = 0.03
+_ARM_LENGTH = 0.5
+# Mean squared misses below this, m^2, are all as good: then the gentler bend goes first.
+_SETTLED = 1e-8
+
+
+@dataclass(frozen=True)
+class Start:
+    """A shape to polish: the robot in it, and the joint angles that come closest to the targets."""
+
+    arm: Arm
+    joints: FloatArray
+
+
+def starts(task: Task, rng: np.random.Generator) -> Iterator[Start]:
+    """Yield distinct start points, the most promising first.
+
+    Args:
+        task: The task.
+        rng: Source of randomness.
+
+    Yields:
+        Start points; none where no random shape respects the limits and the floor.
+    """
+    population = Population.sample(task.robot, _POPULATION, rng)
+    if task.floor is not None:
+        population = population.take(population.end[1][:, 2] > task.floor)
+    if not len(population.length):
+        return
+    cost = _costs(task, estimated_misses(task, population)) + _category_cost(task, population)
+    population = population.take(np.argsort(cost, kind="stable")[:_SHORTLIST])
+    theta2, misses = limited_misses(task, population)
+    cost = _costs(task, misses) + _category_cost(task, population)
+    refined = np.argsort(cost, kind="stable")[:_REFINED]
+    population, joints, cost = refine(task, population.take(refined), theta2[:, refined].T)
+    _, position = population.end
+    poses = np.hstack([position, _ARM_LENGTH * population.end[0][:, :, 0]])
+    taken = np.empty((0, poses.shape[1]))
+    for index in np.lexsort([population.bending, np.maximum(cost, _SETTLED)]):
+        if np.all(np.linalg.norm(taken - poses[index], axis=1) > _DISTINCT):
+            taken = np.vstack([taken, poses[index]])
+            yield Start(population.arm(index, task.base), joints[index])
+
+
+def estimated_misses(task: Task, population: Population) -> FloatArray:
+    """Return about how far the workspace of each shape passes by each target; no joint limits.
+
+    In the plane of height z and squared distance N = |P5|^2 a workspace is an ellipse,
+    (z, N) = (cz, |c|^2 + R^2) + M (cos theta2, sin theta2). For d = (z, N) of the target less the
+    centre, |adj(M) d| - |det M| vanishes on it; divided by the length of its gradient it is the
+    distance to first order, and, unlike Gamma, it is so for perfect squares too.
+
+    Args:
+        task: The task.
+        population: The shapes.
+
+    Returns:
+        Estimated misses, shape (n, N), m.
+    """
+    centre, radius = population.kinematics.centre, population.kinematics.radius
+    _, v, t = np.moveaxis(population.end[0], -1, 0)
+    m00, m01 = -radius * t[:, 2], radius * v[:, 2]
+    m10 = -2.0 * radius * np.einsum("ij,ij->i", centre, t)
+    m11 = 2.0 * radius * np.einsum("ij,ij->i", centre, v)
+    determinant = np.abs(m00 * m11 - m01 * m10)
+    squared = np.einsum("ij,ij->i", centre, centre) + radius**2
+    misses = np.empty((len(task.targets), len(radius)))
+    for row, (x, y, z) in enumerate(task.positions):
+        height = z - centre[:, 2]
+        beyond = x * x + y * y + z * z - squared
+        a = m11 * height - m01 * beyond
+        b = m00 * beyond - m10 * height
+        norm = np.hypot(a, b) + 1e-15
+        by_squared = (m00 * b - m01 * a) / norm
+        by_height = (m11 * a - m10 * b) / norm + 2.0 * z * by_squared
+        by_radius = 2.0 * np.hypot(x, y) * by_squared
+        misses[row] = np.abs(norm - determinant) / (np.hypot(by_height, by_radius) + 1e-12)
+    return misses
+
+
+def limited_misses(task: Task, population: Population) -> tuple[FloatArray, FloatArray]:
+    """Return about how far P5 stays from each target within the joint limits; for a short list.
+
+    Args:
+        task: The task.
+        population: The shapes.
+
+    Returns:
+        The better of both branches of joint 2, moved into its limits, and its miss, each of shape
+        (n, N), rad and m.
+    """
+    limits = task.robot.joint_limits
+    kinematics = population.kinematics
+    branches = kinematics.each_target()
+    angles, misses = [], []
+    for position in task.positions:
+        theta2 = into_turn(kinematics.branches(position)[..., 1], limits.second.middle)
+        theta2 = np.clip(theta2, limits.second.lower, limits.second.upper)
+        miss = branches.miss(theta2, position, limits.base)
+        better = np.argmin(miss, axis=-1)[:, None]
+        angles.append(np.take_along_axis(theta2, better, axis=-1)[:, 0])
+        misses.append(np.take_along_axis(miss, better, axis=-1)[:, 0])
+    return np.array(angles), np.array(misses)
+
+
+def _costs(task: Task, misses: FloatArray) -> FloatArray:
+    """Return the mean squared misses, weighted, m^2, for misses of shape (n, N)."""
+    return np.asarray(relative_weights(task) @ np.minimum(misses, _FAR) ** 2)
+
+
+def _category_cost(task: Task, population: Population) -> FloatArray:
+    """Return the squared distance from the category that the task asks for, m^2."""
+    return np.asarray(np.sum(category_offsets(task, *population.end) ** 2, axis=-1))

@@ -1,0 +1,186 @@
+"""What a synthesis found: always returned, whatever it found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING, Self
+
+from synth.arrays import FloatArray, frozen
+from synth.errors import SynthError
+
+if TYPE_CHECKING:
+    from synth.robot import Arm
+    from synth.synthesis.verification import Verification
+    from synth.task import Task
+
+
+class Status(Enum):
+    """How a synthesis ended; `sentence` is for the user."""
+
+    FOUND = "found", "every target is within its tolerance"
+    BEST_EFFORT = "best_effort", "no shape found reaches every target; this one comes closest"
+    PROVEN_IMPOSSIBLE = "proven_impossible", "no shape of this robot can do the task"
+    LIMIT = "limit", "stopped before the search was complete; this is the best shape so far"
+    FAILED = "failed", "the solver broke down"
+
+    sentence: str
+
+    def __new__(cls, value: str, sentence: str) -> Self:
+        """Make a member whose value is the word of the file format."""
+        member = object.__new__(cls)
+        member._value_ = value
+        member.sentence = sentence
+        return member
+
+
+class NotFoundError(SynthError):
+    """Use of a shape that was not found.
+
+    Attributes:
+        solution: The whole result, with the reason.
+    """
+
+    def __init__(self, solution: Solution) -> None:
+        super().__init__(solution.message)
+        self.solution = solution
+
+
+@dataclass(frozen=True)
+class Design:
+    """A shape of the robot and what the independent check says of it."""
+
+    arm: Arm
+    verification: Verification
+
+
+@dataclass(frozen=True)
+class TargetResult:
+    """What becomes of one target. Positions in the task frame, m.
+
+    Attributes:
+        name: The target's name.
+        position: Where it is, shape (3,).
+        tolerance: Largest miss that counts as reached, m.
+        reached: Where the end effector gets to, shape (3,).
+        miss: Distance between the two, m; infinite where there is no shape.
+        within_tolerance: Whether the target is reached.
+        joints: Joint angles (theta1, theta2), rad.
+        alternatives: Other joint angles that reach it within its tolerance, shape (k, 2), rad.
+    """
+
+    name: str
+    position: FloatArray
+    tolerance: float
+    reached: FloatArray
+    miss: float
+    within_tolerance: bool
+    joints: FloatArray
+    alternatives: FloatArray
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Where the time went, s.
+
+    Attributes:
+        total: From call to return.
+        screening: Finding start points.
+        solving: Building and running the nonlinear program.
+        verifying: Checking what it found.
+    """
+
+    total: float
+    screening: float
+    solving: float
+    verifying: float
+
+
+@dataclass(frozen=True)
+class Solution:
+    """The result of a synthesis.
+
+    Attributes:
+        task: What was asked.
+        status: How it ended.
+        message: The same as a sentence, with the reasons.
+        seed: Seed of the search: the same task, seed and version give the same answer.
+        designs: Distinct shapes, the best first; only shapes that the hardware can take.
+        starts: How many start points were polished.
+        time: Where the time went.
+    """
+
+    task: Task
+    status: Status
+    message: str
+    seed: int
+    designs: tuple[Design, ...]
+    starts: int
+    time: Timing
+
+    @property
+    def found(self) -> bool:
+        """Whether every target is within its tolerance, by the independent check."""
+        return self.status is Status.FOUND
+
+    @property
+    def best(self) -> Design:
+        """The best shape.
+
+        Raises:
+            NotFoundError: There is none.
+        """
+        if not self.designs:
+            raise NotFoundError(self)
+        return self.designs[0]
+
+    @property
+    def robot(self) -> Arm:
+        """The robot in the best shape, with its forward and inverse kinematics.
+
+        Raises:
+            NotFoundError: There is none.
+        """
+        return self.best.arm
+
+    @property
+    def targets(self) -> tuple[TargetResult, ...]:
+        """What becomes of each target in the best shape.
+
+        Raises:
+            NotFoundError: There is none.
+        """
+        return target_results(self.task, self.best)
+
+    def or_raise(self) -> Solution:
+        """Return this solution if it was found.
+
+        Raises:
+            NotFoundError: It was not.
+        """
+        if not self.found:
+            raise NotFoundError(self)
+        return self
+
+
+def target_results(task: Task, design: Design) -> tuple[TargetResult, ...]:
+    """Return what becomes of each target of a task in one shape."""
+    check = design.verification
+    results = []
+    for index, target in enumerate(task.targets):
+        branches = design.arm.inverse_kinematics(target.position)
+        reaching = branches.reaching(target.tolerance)
+        others = abs(reaching - check.joints[index]).max(axis=1) > 1e-3
+        results.append(
+            TargetResult(
+                name=target.name,
+                position=target.position,
+                tolerance=target.tolerance,
+                reached=frozen(check.reached[index]),
+                miss=float(check.misses[index]),
+                within_tolerance=check.within_tolerance[index],
+                joints=frozen(check.joints[index]),
+                alternatives=frozen(reaching[others]),
+            )
+        )
+    return tuple(results)

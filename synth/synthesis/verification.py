@@ -1,0 +1,193 @@
+"""The independent check: plain numpy and forward kinematics, through no expression of the solver.
+
+Only this module may say that a target is reached or that a shape respects the limits.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.arrays import FloatArray, frozen
+from synth.task import Topology
+
+if TYPE_CHECKING:
+    from synth.robot import Arm
+    from synth.task import Task
+
+# What rounding may do: a micrometre, a microradian.
+_LENGTH_SLACK = 1e-6
+_ANGLE_SLACK = 1e-6
+
+
+@dataclass(frozen=True)
+class Violation:
+    """A limit that a shape breaks.
+
+    Attributes:
+        limit: Name of the limit.
+        amount: By how much, in the unit that the sentence names.
+        sentence: What is wrong, for the user.
+    """
+
+    limit: str
+    amount: float
+    sentence: str
+
+
+@dataclass(frozen=True)
+class Verification:
+    """What a shape really does for a task.
+
+    Attributes:
+        joints: Best joint angles (theta1, theta2) for each target, shape (n, 2), rad.
+        reached: P5 at these angles in the task frame, shape (n, 3), m.
+        misses: Distance of P5 from each target, shape (n,), m.
+        within_tolerance: Whether each target is reached, shape (n,).
+        gamma_residuals: |Gamma(P5)| over the sum of its terms' magnitudes, shape (n,): that P5 lies
+            on the published surface, too; about 1e-12.
+        violations: Limits that the shape breaks; empty for a shape that the hardware can take.
+    """
+
+    joints: FloatArray
+    reached: FloatArray
+    misses: FloatArray
+    within_tolerance: tuple[bool, ...]
+    gamma_residuals: FloatArray
+    violations: tuple[Violation, ...]
+
+    @property
+    def possible(self) -> bool:
+        """Whether the hardware can take the shape."""
+        return not self.violations
+
+    @property
+    def found(self) -> bool:
+        """Whether the shape is possible and reaches every target within its tolerance."""
+        return self.possible and all(self.within_tolerance)
+
+
+def verify(task: Task, arm: Arm, joints: FloatArray | None = None) -> Verification:
+    """Check a shape against a task.
+
+    Args:
+        task: The task.
+        arm: The robot in the shape.
+        joints: Joint angles to consider beside the closest ones, shape (n, 2), rad: near the floor
+            the closest point of the workspace may be below it.
+
+    Returns:
+        The misses by forward kinematics and every limit that is broken.
+    """
+    targets = np.array([target.position for target in task.targets])
+    closest, _ = arm.closest_joints(targets)
+    candidates = closest[None] if joints is None else np.stack([closest, joints])
+    points = arm.forward_kinematics(candidates[..., 0], candidates[..., 1])
+    misses = np.linalg.norm(points - targets, axis=-1)
+    floor = -math.inf if task.floor is None else task.floor
+    sunk = arm.base.to_base(points)[..., 2] < floor - _LENGTH_SLACK
+    chosen = np.argmin(np.where(sunk, np.inf, misses), axis=0), np.arange(len(targets))
+    reached, misses, sunk = points[chosen], misses[chosen], sunk[chosen]
+    within = (misses <= task.tolerances) & ~sunk
+    return Verification(
+        joints=frozen(candidates[chosen]),
+        reached=frozen(reached),
+        misses=frozen(misses),
+        within_tolerance=tuple(bool(value) for value in within),
+        gamma_residuals=frozen(arm.surface.residual(arm.base.to_base(reached))),
+        violations=(
+            *_link_violations(arm),
+            *_joint_violations(arm, candidates[chosen]),
+            *_floor_violations(task, arm, arm.base.to_base(reached)[:, 2]),
+            *_topology_violations(task, arm),
+        ),
+    )
+
+
+def _exceeds(limit: str, value: float, bound: float, slack: float, sentence: str) -> list[Violation]:
+    """Return a violation if `value` is above `bound`; NaN violates everything."""
+    if value <= bound + slack:
+        return []
+    return [Violation(limit, value - bound, sentence)]
+
+
+def _link_violations(arm: Arm) -> list[Violation]:
+    link, shape = arm.robot.link, arm.shape
+    too_long = "the link would have to be {:.1f} mm long; {:.1f} mm is its limit"
+    length = shape.length
+    return [
+        *_exceeds(
+            "length", length, link.length.upper, _LENGTH_SLACK,
+            too_long.format(1e3 * length, 1e3 * link.length.upper),
+        ),
+        *_exceeds(
+            "length", -length, -link.length.lower, _LENGTH_SLACK,
+            too_long.format(1e3 * length, 1e3 * link.length.lower),
+        ),
+        *_exceeds(
+            "min_bend_radius", link.min_bend_radius, shape.min_bend_radius, _LENGTH_SLACK,
+            f"the link would need a bend radius of {1e3 * shape.min_bend_radius:.1f} mm; "
+            f"{1e3 * link.min_bend_radius:.1f} mm is its limit",
+        ),
+        *_exceeds(
+            "max_total_bend", shape.total_bend, link.max_total_bend, _ANGLE_SLACK,
+            f"the link would have to bend by {math.degrees(shape.total_bend):.1f} deg in all; "
+            f"{math.degrees(link.max_total_bend):.1f} deg is its limit",
+        ),
+    ]  # fmt: skip
+
+
+def _joint_violations(arm: Arm, joints: FloatArray) -> list[Violation]:
+    limits = arm.robot.joint_limits
+    violations = []
+    for name, interval, angles in (
+        ("base joint", limits.base, joints[:, 0]),
+        ("second joint", limits.second, joints[:, 1]),
+    ):
+        outside = np.maximum(interval.lower - angles, angles - interval.upper)
+        worst = float(np.max(outside, initial=-math.inf))
+        violations += _exceeds(
+            name, worst, 0.0, _ANGLE_SLACK,
+            f"the {name} would have to turn {math.degrees(worst):.2f} deg beyond its limit",
+        )  # fmt: skip
+    return violations
+
+
+def _floor_violations(task: Task, arm: Arm, end_effector: FloatArray) -> list[Violation]:
+    if task.floor is None:
+        return []
+    heights = {
+        "link": arm.robot.d12 + arm.shape.lowest(),
+        "second joint": float(arm.axis_points[2:, 2].min()),
+        "end effector": float(np.min(end_effector, initial=math.inf)),
+    }
+    violations = []
+    for part, height in heights.items():
+        depth = task.floor - height
+        violations += _exceeds(
+            f"floor: {part}", depth, 0.0, _LENGTH_SLACK,
+            f"the {part} would be {1e3 * depth:.2f} mm below the floor",
+        )  # fmt: skip
+    return violations
+
+
+def _topology_violations(task: Task, arm: Arm) -> list[Violation]:
+    """Check the category asked for: axes that meet to 1e-6 m, or are parallel to 1e-6 rad."""
+    off = arm.category_distances
+    match task.topology:
+        case Topology.SPHERICAL:
+            amount, slack = off.spherical, _LENGTH_SLACK
+        case Topology.PUMA:
+            amount, slack = off.puma, _LENGTH_SLACK
+        case Topology.SCARA:
+            amount, slack = off.scara, _ANGLE_SLACK
+        case Topology.GENERAL:
+            amount, slack = float(arm.category.value != "general"), 0.0
+        case Topology.ANY:
+            return []
+    return _exceeds(
+        "topology", amount, 0.0, slack, f"the shape is not {task.topology.value}, which the task asks for"
+    )

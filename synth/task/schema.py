@@ -1,0 +1,181 @@
+"""What task and robot files may hold, in the units of the file: the pydantic models.
+
+Ranges are wide: they keep out slips (a unit mistaken, a digit too many) and what would overflow.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, TypeVar
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    ValidationInfo,
+    field_validator,
+)
+
+from synth.task.model import Objective, Topology
+
+ONE, RANGE, TEXT, MAPPING = "<one>", "<range>", "<text>", "<mapping>"  # tags of unions, never keys
+SMALLEST = 1e-9
+LARGEST = 1e6
+
+
+def _in_order(limits: list[float]) -> list[float]:
+    if limits[0] > limits[1]:
+        raise ValueError(f"must run from low to high, but is [{limits[0]:g}, {limits[1]:g}]")
+    return limits
+
+
+def _within_a_turn(limits: list[float]) -> list[float]:
+    if limits[1] - limits[0] > 360:
+        raise ValueError(f"must be at most 360 degrees wide, but is {limits[1] - limits[0]:g}")
+    return limits
+
+
+def _one_line(text: str) -> str:
+    if not (text.strip() and len(text) <= 100 and text.isprintable()):
+        raise ValueError("must be one line of 1 to 100 printable characters")
+    return text
+
+
+def _absent() -> Any:
+    """Return the value of a key that was not written; to write null is a mistake all the same."""
+    return None
+
+
+_T = TypeVar("_T")
+Pair = Annotated[list[_T], Field(min_length=2, max_length=2), AfterValidator(_in_order)]
+Name = Annotated[str, AfterValidator(_one_line)]
+LengthUnit = Literal["mm", "cm", "m"]
+Coordinate = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
+Position = Annotated[list[Coordinate], Field(min_length=3, max_length=3)]
+Positive = Annotated[float, Field(ge=SMALLEST, le=LARGEST)]
+Angle = Annotated[float, Field(ge=-720, le=720)]
+AngleRange = Annotated[Pair[Angle], AfterValidator(_within_a_turn)]
+PositiveOrRange = Annotated[
+    Annotated[Positive, Tag(ONE)] | Annotated[Pair[Positive], Tag(RANGE)],
+    Discriminator(lambda value: RANGE if isinstance(value, list) else ONE),
+]
+
+
+def ends(value: float | list[float]) -> tuple[float, float]:
+    """Return the ends of a `PositiveOrRange`; one number is both."""
+    return (value[0], value[1]) if isinstance(value, list) else (value, value)
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+
+class LinkEntry(_Strict):
+    """The malleable link."""
+
+    length: PositiveOrRange = Field(description="length of its centreline, or [low, high] if it stretches")
+    min_bend_radius: Positive = Field(description="smallest radius of its centreline")
+    diameter: Positive = Field(default_factory=_absent, description="outer diameter; 0 if absent")
+    max_total_bend_deg: Positive = Field(default_factory=_absent, description="no limit if absent")
+
+
+class RigidLinkEntry(_Strict):
+    """The rigid link; [low, high] is to be chosen by the synthesis."""
+
+    d35: PositiveOrRange = Field(description="distance from P3 to the end effector P5")
+    d45: PositiveOrRange = Field(description="distance from P4 to the end effector P5")
+
+
+class JointLimitsEntry(_Strict):
+    """Ranges of the joints in degrees."""
+
+    base: AngleRange = Field(default_factory=_absent, description="range of joint 1; a full turn if absent")
+    second: AngleRange = Field(default_factory=_absent, description="range of joint 2; a full turn if absent")
+
+
+class RobotEntry(_Strict):
+    """A robot inside a task; its unit is that of the task unless it states its own."""
+
+    name: Name = Field(default_factory=_absent, description="what the robot is called")
+    length_unit: LengthUnit = Field(default_factory=_absent, description="unit of all lengths: mm, cm or m")
+    d12: Positive = Field(description="distance from P1 to P2, where the malleable link starts")
+    link: LinkEntry = Field(description="the malleable link: length, min_bend_radius, diameter")
+    d34: Positive = Field(description="distance of the points P3 and P4 on the second axis")
+    tip_offset: Coordinate = Field(
+        default_factory=_absent, description="where the link ends, from P3 towards P4; d34 / 2 if absent"
+    )
+    rigid_link: RigidLinkEntry = Field(description="the distances d35 and d45 to the end effector")
+    joint_limits_deg: JointLimitsEntry = Field(
+        default_factory=JointLimitsEntry, description="ranges of the joints, in degrees"
+    )
+
+    @field_validator("rigid_link")
+    @classmethod
+    def _triangle(cls, rigid_link: RigidLinkEntry, info: ValidationInfo) -> RigidLinkEntry:
+        """Ask for one choice at least with |d35 - d45| <= d34 <= d35 + d45."""
+        if (d34 := info.data.get("d34")) is None:
+            return rigid_link
+        (low35, high35), (low45, high45) = ends(rigid_link.d35), ends(rigid_link.d45)
+        slack = 1e-9 * d34  # a triangle that is flat but for rounding is one
+        if high35 + high45 < d34 - slack:
+            raise ValueError(
+                f"no triangle P3 P4 P5: d35 + d45 is at most {high35 + high45:g}, less than d34 = {d34:g}"
+            )
+        for longer, shorter, gap in (("d35", "d45", low35 - high45), ("d45", "d35", low45 - high35)):
+            if gap > d34 + slack:
+                raise ValueError(
+                    f"no triangle P3 P4 P5: {longer} exceeds {shorter} by at least {gap:g}, "
+                    f"more than d34 = {d34:g}"
+                )
+        return rigid_link
+
+
+class RobotFile(RobotEntry):
+    """A robot file."""
+
+    length_unit: LengthUnit = Field(description="unit of all lengths in this file: mm, cm or m")
+
+
+class BaseEntry(_Strict):
+    """Where the robot stands in the task frame."""
+
+    position: Position = Field(default=[0.0, 0.0, 0.0], description="[x, y, z] of P1")
+    yaw_deg: Angle = Field(default=0.0, description="rotation about the vertical")
+
+
+class TargetEntry(_Strict):
+    """A point to be reached."""
+
+    name: Name = Field(default_factory=_absent, description="how the result speaks of it")
+    position: Position = Field(description="[x, y, z] in the task frame")
+    tolerance: Positive = Field(default_factory=_absent, description="largest miss; 1 mm if absent")
+    weight: Positive = Field(default=1.0, description="factor of its squared miss")
+
+
+class TaskFile(_Strict):
+    """A task file."""
+
+    synth: Annotated[int, Field(ge=1, le=1)] = Field(description="version of this format: 1")
+    name: Name = Field(default_factory=_absent, description="what the task is called")
+    length_unit: LengthUnit = Field(description="unit of all lengths in this file: mm, cm or m")
+    robot: Annotated[
+        Annotated[str, Tag(TEXT)] | Annotated[RobotEntry, Tag(MAPPING)],
+        Discriminator(lambda value: {str: TEXT, dict: MAPPING}.get(type(value))),
+    ] = Field(description="a preset's name, the path of a robot file, or a mapping")
+    base: BaseEntry = Field(default_factory=BaseEntry, description="where the robot stands in the task frame")
+    floor: Coordinate | None = Field(default=0.0, description="height in the base frame; null: no floor")
+    topology: Annotated[Topology, Field(strict=False)] = Field(
+        default=Topology.ANY, description="kind of shape"
+    )
+    objective: Annotated[Objective, Field(strict=False)] = Field(
+        default=Objective.LEAST_SQUARES, description="norm of miss over tolerance"
+    )
+    targets: Annotated[list[TargetEntry], Field(min_length=1)] = Field(description="the points to reach")
+    obstacles: Annotated[list[Any], Field(max_length=0)] = Field(default=[], description="none so far")
+
+
+def task_schema() -> dict[str, Any]:
+    """Return the JSON Schema of task files, for editors that complete and check YAML."""
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | TaskFile.model_json_schema()

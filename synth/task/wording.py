@@ -1,0 +1,146 @@
+"""What pydantic objects to, as sentences for the person who wrote the file."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from typing import TYPE_CHECKING, Any, TypeVar, get_args
+
+from pydantic import BaseModel, ValidationError
+
+from synth.task.document import KeyPath, Refused, key_text
+from synth.task.schema import MAPPING, ONE, RANGE, TEXT
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from pydantic_core import ErrorDetails
+
+    from synth.task.document import Document
+
+_M = TypeVar("_M", bound=BaseModel)
+
+_LATER = "not supported by this version of synth yet; "
+_LATER_KEYS = {
+    "surface": f"a desired surface is {_LATER}give points under 'targets'",
+    "path": f"a path to be followed is {_LATER}give points under 'targets'",
+}
+_SENTENCES = {
+    "float_type": "must be a number, but is {value}",
+    "one_or_range": "must be a number or [low, high], but is {value}",
+    "string_type": "must be text, but is {value}",
+    "string_unicode": "must be text, but holds characters that no text can hold",
+    "list_type": "must be a list, but is {value}",
+    "model_type": "must be a mapping (key: value), but is {value}",
+    "union_tag_not_found": "must be a preset's name, the path of a robot file, or a mapping, but is {value}",
+    "literal_error": "must be {expected}, but is {value}",
+    "enum": "must be {expected}, but is {value}",
+    "finite_number": "must be a finite number, but is {value}",
+    "not_positive": "must be greater than 0, but is {value}",
+    "greater_than_equal": "must be at least {ge:g}, but is {value}",
+    "less_than_equal": "must be at most {le:g}, but is {value}",
+    "too_short": "must be a list of {min_length} numbers, but has {actual_length}",
+    "too_long": "must be a list of {max_length} numbers, but has {actual_length}",
+    "value_error": "{error}",
+}
+_SENTENCES_AT: dict[KeyPath, dict[str, str]] = {
+    ("synth",): dict.fromkeys(
+        ("int_type", "int_from_float", "greater_than_equal", "less_than_equal"),
+        "must be 1, the only version of this format, but is {value}",
+    ),
+    ("targets",): {"too_short": "must hold one target at least, but is an empty list"},
+    ("obstacles",): {"too_long": f"obstacles are {_LATER}leave the list empty"},
+}
+
+
+def validate(document: Document, schema: type[_M]) -> _M | None:
+    """Check a document against a model and report every mistake to the document.
+
+    Returns:
+        The model, or None where the document does not fit it.
+    """
+    try:
+        return schema.model_validate(document.value)
+    except ValidationError as error:
+        details = [detail for detail in error.errors() if not isinstance(detail["input"], Refused)]
+    spelt_wrong = set()
+    for detail in details:
+        if detail["type"] == "extra_forbidden":
+            *parent, key = _path(detail)
+            guess = guesses(key, _fields(schema, parent))
+            spelt_wrong.add((*parent, *guess))
+    for detail in details:
+        path = _path(detail)
+        if detail["type"] == "missing" and path in spelt_wrong:
+            continue  # its misspelling is reported
+        document.report(path, _sentence(detail, path, _fields(schema, path[:-1])))
+    return None
+
+
+def did_you_mean(word: object, known: Iterable[str]) -> str:
+    """Return `; did you mean 'this'?` for a word close to a known one, and nothing otherwise."""
+    return "".join(f"; did you mean {close!r}?" for close in guesses(word, known))
+
+
+def guesses(word: object, known: Iterable[str]) -> list[str]:
+    """Return the known word closest to one that is not known, in a list of one or none."""
+    return difflib.get_close_matches(word.lower(), list(known), n=1) if isinstance(word, str) else []
+
+
+def _path(detail: ErrorDetails) -> KeyPath:
+    """Return where it is without the tags of unions; an unknown key, though, is as the user wrote it."""
+    place = detail["loc"]
+    inner = len(place) - (detail["type"] == "extra_forbidden")
+    return (*(part for part in place[:inner] if part not in {ONE, RANGE, TEXT, MAPPING}), *place[inner:])
+
+
+def _fields(schema: type[BaseModel], path: Iterable[str | int]) -> dict[str, Any]:
+    """Return the fields of the model that stands at a path."""
+    for part in path:
+        if isinstance(part, str) and part in schema.model_fields:
+            schema = _model_in(schema.model_fields[part].annotation) or schema
+    return dict(schema.model_fields)
+
+
+def _model_in(annotation: Any) -> type[BaseModel] | None:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    return next((model for part in get_args(annotation) if (model := _model_in(part))), None)
+
+
+def _sentence(detail: ErrorDetails, path: KeyPath, siblings: dict[str, Any]) -> str:
+    """Say what is wrong with the key or the value at a path."""
+    kind, value = detail["type"], detail["input"]
+    key = str(path[-1]) if path else ""
+    if kind == "missing":
+        return f"is missing ({siblings[key].description})"
+    if kind == "extra_forbidden":
+        known = did_you_mean(key, siblings) or f"; known are {', '.join(siblings)}"
+        return _LATER_KEYS.get(key_text(path), f"is not a known key{known}")
+    context = detail.get("ctx", {})
+    if kind == "float_type" and path[0] == "base" and isinstance(value, list):
+        return f"a free base is {_LATER}give one number"
+    if kind == "float_type" and detail["loc"][-1] == ONE:
+        kind = "one_or_range"
+    elif kind == "greater_than_equal" and context["ge"] > 0 >= value:
+        kind = "not_positive"
+    template = (_SENTENCES | _SENTENCES_AT.get(path, {})).get(kind)
+    if template is None:
+        return detail["msg"]
+    sentence = template.format(value=_described(value), **context)
+    return sentence + did_you_mean(value, re.findall(r"'(\w+)'", context.get("expected", "")))
+
+
+def _described(value: object) -> str:
+    """Name a value in a sentence."""
+    if value is None:
+        return "empty (null)"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, int | float):
+        return repr(value)
+    if isinstance(value, str):
+        return f"the text {value[:40]!r}"
+    if isinstance(value, dict | list):
+        return "a mapping" if isinstance(value, dict) else "a list"
+    return f"a {type(value).__name__}"

@@ -1,0 +1,103 @@
+"""Tasks with a known answer: a random feasible shape, and targets at random joint angles of it.
+
+The shapes are drawn on their own, through nothing of the synthesis: links of three to six arcs of
+unequal length, which the solver's four equal arcs can only imitate.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from synth.robot import PRESETS, Arm, LinkShape
+from synth.task import PointTarget, Task, Topology
+
+ROBOT = PRESETS["malleable-2dof"]
+
+
+def feasible(arm: Arm, floor: float = 0.0) -> bool:
+    """Whether the hardware can take a shape above the floor."""
+    link, shape = arm.robot.link, arm.shape
+    return (
+        link.length.contains(shape.length)
+        and shape.bends.max() <= link.max_curvature
+        and shape.total_bend <= link.max_total_bend
+        and arm.robot.d12 + shape.lowest() >= floor
+        and arm.axis_points[2:, 2].min() >= floor
+    )
+
+
+def random_shape(rng: np.random.Generator) -> LinkShape:
+    arcs = int(rng.integers(3, 7))
+    length = rng.uniform(ROBOT.link.length.lower, ROBOT.link.length.upper)
+    bends = np.sqrt(rng.uniform(size=arcs)) * ROBOT.link.max_curvature
+    turns = rng.uniform(0.0, 2.0 * np.pi, arcs)
+    shares = rng.uniform(0.5, 1.5, arcs)
+    curvatures = bends[:, None] * np.column_stack([np.cos(turns), np.sin(turns)])
+    return LinkShape(curvatures, length * shares / shares.sum())
+
+
+def arm_of(shape: LinkShape) -> Arm:
+    return Arm(ROBOT, shape, ROBOT.rigid_link.d35.lower, ROBOT.rigid_link.d45.lower)
+
+
+def planted_arm(rng: np.random.Generator, topology: Topology = Topology.ANY) -> Arm:
+    """Return a feasible arm, exactly of the topology asked for."""
+    while True:
+        arm = arm_of(random_shape(rng))
+        if topology is not Topology.ANY:
+            arm = _bent_into(arm, topology)
+        if arm is not None and feasible(arm):
+            return arm
+
+
+def planted_task(seed: int, count: int | None = None, topology: Topology = Topology.ANY) -> tuple[Task, Arm]:
+    """Return a task with 1 to 20 exact targets above the floor, and the arm that was planted."""
+    rng = np.random.default_rng(seed)
+    count = count or int(rng.integers(1, 21))
+    limits = ROBOT.joint_limits
+    while True:
+        arm = planted_arm(rng, topology)
+        theta1 = rng.uniform(limits.base.lower, limits.base.upper, 50 * count)
+        theta2 = rng.uniform(limits.second.lower, limits.second.upper, 50 * count)
+        points = arm.forward_kinematics(theta1, theta2)
+        points = points[points[:, 2] >= 0.0][:count]
+        if len(points) == count:
+            break
+    targets = tuple(PointTarget(f"target {i + 1}", point, 0.5e-3) for i, point in enumerate(points))
+    return Task(f"planted {seed}", ROBOT, targets), arm
+
+
+def out_of_reach(seed: int) -> Task:
+    """Return a planted task with one target moved beyond what any shape can reach."""
+    task, _ = planted_task(seed)
+    rng = np.random.default_rng([seed, 1])
+    direction = rng.normal(size=3)
+    direction[2] = abs(direction[2])
+    # Link and rigid link, stretched out from P2, reach 0.7 m + 0.457 m.
+    distance = rng.uniform(1.16, 1.5)
+    far = np.array([0.0, 0.0, ROBOT.d12]) + distance * direction / np.linalg.norm(direction)
+    victim = int(rng.integers(len(task.targets)))
+    targets = list(task.targets)
+    targets[victim] = replace(targets[victim], position=far)
+    return replace(task, targets=tuple(targets))
+
+
+def _bent_into(arm: Arm, topology: Topology) -> Arm | None:
+    """Bend a link until its axes meet, or are parallel, to rounding."""
+    lengths = arm.shape.lengths
+
+    def bent(curvatures: np.ndarray) -> Arm:
+        return arm_of(LinkShape(curvatures.reshape(-1, 2), lengths))
+
+    def off(curvatures: np.ndarray) -> np.ndarray:
+        frame, position = bent(curvatures).end_frame
+        if topology is Topology.SCARA:
+            return frame[:2, 0]
+        meeting = np.array([0.0, 0.0, 0.0 if topology is Topology.SPHERICAL else ROBOT.d12])
+        return frame[:, 1:].T @ (position - meeting)
+
+    answer = least_squares(off, arm.shape.curvatures.ravel(), xtol=1e-15, ftol=1e-15, gtol=1e-15)
+    return bent(answer.x) if np.abs(answer.fun).max() < 1e-10 else None

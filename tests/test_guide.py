@@ -1,0 +1,227 @@
+"""Laws of the guide: rigid markers, points on the link, and tolerances that mean what they say."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from synth.guide import MARKERS, guide_text, make_guide, summary_text
+from synth.guide.guide import SPACING, hold_angle
+from synth.guide.sensitivity import ShapeTolerance, shape_tolerance, tilt_rate
+from synth.robot import PRESETS, Arm, BasePose, Interval, JointLimits, LinkShape
+from synth.robot.kinematics import Kinematics
+from synth.synthesis import Design, Solution, Status, Timing, verify
+from synth.task import PointTarget, Task
+
+ROBOT = PRESETS["malleable-2dof"]
+FREE = replace(ROBOT, joint_limits=JointLimits())
+BASE = BasePose([0.1, -0.2, 0.05], 0.7)
+TIMING = Timing(1.25, 0.5, 0.5, 0.25)
+
+
+def make_arm(curvatures=((3.0, 1.0), (-2.0, 4.0), (1.0, 5.0)), length=0.63, robot=ROBOT, base=BASE):
+    shape = LinkShape(curvatures, np.full(len(curvatures), length / len(curvatures)))
+    return Arm(robot, shape, 0.455, 0.460, base)
+
+
+def make_design(arm, joints, offsets, tolerance=2e-3):
+    """A task whose targets are some way off what an arm reaches, and the design that does it."""
+    points = arm.forward_kinematics(*np.asarray(joints).T) + np.asarray(offsets)
+    targets = tuple(PointTarget(f"t{i}", point, tolerance) for i, point in enumerate(points))
+    task = Task("a task", arm.robot, targets, arm.base, floor=None)
+    return task, Design(arm, verify(task, arm))
+
+
+ARM = make_arm()
+JOINTS = [[1.0, 2.0], [4.0, 3.3], [2.5, 4.6]]
+TASK, DESIGN = make_design(ARM, JOINTS, np.zeros((3, 3)))
+GUIDE = make_guide(TASK, DESIGN)
+SOLUTION = Solution(TASK, Status.FOUND, Status.FOUND.sentence, 7, (DESIGN,), 3, TIMING)
+NOTHING = replace(SOLUTION, status=Status.FAILED, message=Status.FAILED.sentence + ": no; never", designs=())
+
+curvature = st.floats(-6.0, 6.0)
+arms = st.builds(
+    make_arm,
+    st.lists(st.tuples(curvature, curvature), min_size=1, max_size=4),
+    st.floats(0.55, 0.7),
+    st.just(FREE),
+    st.builds(BasePose, st.tuples(*[st.floats(-1.0, 1.0)] * 3).map(np.array), st.floats(-math.pi, math.pi)),
+)
+
+
+def placements(arm):
+    guide = make_guide(*make_design(arm, JOINTS, np.zeros((3, 3))))
+    return guide, (guide.at_zero, guide.hold)
+
+
+@given(arms)
+def test_markers_have_the_distances_of_the_solution_at_both_angles(arm):
+    guide = make_guide(*make_design(replace(arm, robot=ROBOT), JOINTS, np.zeros((3, 3))))
+    assert guide.hold.joint1 == pytest.approx(math.pi)
+    for placement in (guide.at_zero, guide.hold):
+        difference = placement.markers[:, None] - placement.markers[None]
+        np.testing.assert_allclose((difference**2).sum(-1), arm.squared_distances[:4, :4], atol=1e-12)
+
+
+@given(arms)
+def test_axis_2_passes_through_p3_p4_and_the_links_end(arm):
+    guide, both = placements(arm)
+    for placement in both:
+        p3, p4 = placement.markers[2:]
+        along = (p3 - placement.axis_point) @ placement.axis_direction
+        assert along == pytest.approx(-arm.robot.tip_offset, abs=1e-12)
+        np.testing.assert_allclose(placement.axis_point + along * placement.axis_direction, p3, atol=1e-12)
+        np.testing.assert_allclose(p3 + arm.robot.d34 * placement.axis_direction, p4, atol=1e-12)
+        np.testing.assert_allclose(placement.centreline[-1], placement.axis_point, atol=1e-12)
+    assert guide.station_names[-1] == "END"
+
+
+@given(arms)
+def test_the_points_of_the_centreline_are_on_the_link_50_mm_apart(arm):
+    guide, both = placements(arm)
+    np.testing.assert_allclose(guide.stations[:-1], SPACING * np.arange(1, len(guide.stations)))
+    assert guide.stations[-1] == arm.shape.length
+    assert 0.0099 < guide.stations[-1] - guide.stations[-2] < 0.0601
+    assert guide.station_names[:2] == ("L050", "L100")
+    dense = np.linspace(0.0, arm.shape.length, 4001)
+    link = arm.base.to_task(arm.shape.point_at(dense) + [0.0, 0.0, arm.robot.d12])
+    travelled = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(link, axis=0), axis=1))])
+    for station, point in zip(guide.stations, both[0].centreline, strict=True):
+        nearest = np.argmin(np.linalg.norm(link - point, axis=1))
+        assert np.linalg.norm(link[nearest] - point) < 1e-4
+        assert abs(travelled[nearest] - station) < 3e-4
+
+
+def test_the_hold_set_is_the_zero_set_turned_about_axis_1():
+    turn = BasePose(yaw=GUIDE.hold.joint1)
+    for name, point in GUIDE.points(GUIDE.at_zero).items():
+        turned = BASE.to_task(turn.to_task(BASE.to_base(point)))
+        np.testing.assert_allclose(GUIDE.points(GUIDE.hold)[name], turned, atol=1e-12)
+    assert tuple(GUIDE.points(GUIDE.hold))[:4] == MARKERS
+
+
+@pytest.mark.parametrize(
+    ("limits", "angle"),
+    [((-1.0, 2.0), 0.0), ((0.0, 2.0), 0.0), ((0.2, 6.2), 3.2), ((-3.0, -1.0), -2.0)],
+)
+def test_joint_1_is_held_at_zero_or_in_the_middle_of_its_range(limits, angle):
+    assert hold_angle(Interval(*limits)) == pytest.approx(angle)
+
+
+def worst_excess(task, arm, shifts, tilts):
+    """The largest miss over its tolerance once axis 2 is shifted, and tilted about the link's end.
+
+    Rodrigues' rotation and the closest joint angles, for shifts and tilts of shape (k, 3) at once.
+    """
+    shifts, tilts = np.broadcast_arrays(shifts, tilts)
+    rotation, end = arm.end_frame
+    angle = np.linalg.norm(tilts, axis=1)[:, None, None]
+    cross = np.cross(np.eye(3), -(tilts[:, None] / np.maximum(angle, 1e-300)))
+    turn = np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
+    centres = end + shifts + turn @ (arm.circle.centre - end)
+    kinematics = Kinematics((turn @ rotation)[:, None], centres[:, None], np.array([[arm.circle.radius]]))
+    points = np.broadcast_to(task.positions, (len(shifts), *task.positions.shape))
+    _, misses = kinematics.closest(points, arm.robot.joint_limits)
+    return (misses / task.tolerances).max()
+
+
+def tilts_across(arm, count=180):
+    """Unit tilts across axis 2, all around it."""
+    angles = np.linspace(0.0, 2.0 * math.pi, count, endpoint=False)[:, None]
+    rotation, _ = arm.end_frame
+    return np.cos(angles) * rotation[:, 1] + np.sin(angles) * rotation[:, 2]
+
+
+def directions(rng, count):
+    points = rng.normal(size=(count, 3))
+    return points / np.linalg.norm(points, axis=1, keepdims=True)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_tolerance_is_the_smallest_error_that_loses_a_target(seed):
+    rng = np.random.default_rng(seed)
+    arm = make_arm(rng.uniform(-5.0, 5.0, (3, 2)), robot=(ROBOT, FREE)[seed % 2])
+    # A small tolerance: the law is one of first order.
+    offsets = directions(rng, 3) * (0.0, 1e-5, 3e-5)[seed % 3]
+    task, design = make_design(arm, JOINTS, offsets, tolerance=1e-4)
+    tolerance = shape_tolerance(task, design)
+    tilts, shifts = tilts_across(arm), directions(rng, 180)
+    assert worst_excess(task, arm, np.zeros(3), tolerance.direction * tilts) == pytest.approx(1.0, abs=0.01)
+    assert 0.95 < worst_excess(task, arm, tolerance.position * shifts, np.zeros(3)) < 1.0 + 1e-4
+    half = 0.5 * tolerance.position * shifts, 0.5 * tolerance.direction * tilts
+    assert worst_excess(task, arm, *half) < 1.01
+
+
+def test_bending_a_real_arm_loses_what_the_rates_say():
+    """Errors of the arcs move and tilt axis 2; together they account for the change of the miss."""
+    rng = np.random.default_rng(5)
+    task, design = make_design(ARM, JOINTS, directions(rng, 3) * 1e-3)
+    check, (rotation, end) = design.verification, ARM.end_frame
+    for _ in range(20):
+        bent = make_arm(np.array(ARM.shape.curvatures) + 1e-5 * rng.normal(size=(3, 2)))
+        new_rotation, new_end = bent.end_frame
+        skew = new_rotation @ rotation.T
+        tilt = 0.5 * np.array([skew[2, 1] - skew[1, 2], skew[0, 2] - skew[2, 0], skew[1, 0] - skew[0, 1]])
+        across = tilt - tilt @ rotation[:, 0] * rotation[:, 0]
+        _, misses = bent.closest_joints([target.position for target in task.targets])
+        for target, joints, before, after in zip(
+            task.targets, check.joints, check.misses, misses, strict=True
+        ):
+            rate = tilt_rate(ARM, target.position, joints)
+            bound = np.linalg.norm(new_end - end) + rate * np.linalg.norm(across)
+            assert abs(after - before) <= bound * (1.0 + 1e-2) + 1e-9
+
+
+def test_at_a_joint_limit_the_worst_tilt_may_push_past_the_limit():
+    lower = ROBOT.joint_limits.second.lower
+    task, design = make_design(ARM, [[2.0, lower]], np.zeros((1, 3)), tolerance=1e-4)
+    tolerance = shape_tolerance(task, design)
+    worst = worst_excess(task, ARM, np.zeros(3), tolerance.direction * tilts_across(ARM))
+    assert worst == pytest.approx(1.0, abs=0.01)
+
+
+@given(arms, st.floats(-math.pi, math.pi), st.floats(0.0, 2.0 * math.pi))
+def test_no_tilt_moves_p5_faster_than_its_distance_from_the_links_end(arm, theta1, theta2):
+    point = arm.forward_kinematics(theta1, theta2)
+    rate = tilt_rate(arm, point, np.array([theta1, theta2]))
+    lever = np.linalg.norm(arm.kinematics.forward(0.0, theta2) - arm.end_frame[1])
+    assert 0.0 <= rate <= lever * (1.0 + 1e-9)
+
+
+def test_without_a_target_in_tolerance_there_is_none_to_keep():
+    task, design = make_design(ARM, JOINTS, np.full((3, 3), 0.9), tolerance=1e-6)
+    tolerance = shape_tolerance(task, design)
+    assert math.isnan(tolerance.position)
+    assert math.isnan(tolerance.direction)
+    assert tolerance.position_target == ShapeTolerance().direction_target == ""
+    assert "No target is within its tolerance" in guide_text(make_guide(task, design), SOLUTION)
+
+
+def test_the_text_holds_the_headline_the_angle_and_the_points():
+    text = guide_text(GUIDE, SOLUTION)
+    lines = text.splitlines()
+    assert lines[0] == f"a task: {Status.FOUND.sentence}"
+    assert "Set joint 1 to 180.0 deg and hold it there." in lines
+    rows = {name: line.split()[1:] for line in lines for name in MARKERS if line.startswith(f"{name}   ")}
+    for name, row in zip(MARKERS, GUIDE.hold.markers, strict=True):
+        np.testing.assert_allclose(np.array(rows[name], dtype=float), 1e3 * row, atol=0.051)
+    assert f"link {1e3 * ARM.shape.length:.1f} mm long" in text
+    assert "seed 7, 3 starts, 1.25 s" in text
+    assert "nan" not in text
+
+
+def test_many_targets_are_summed_up():
+    task, design = make_design(ARM, [[1.0, 2.0]] * 14, np.outer(np.arange(14) - 7, [1e-3, 0, 0]))
+    text = summary_text(Solution(task, Status.BEST_EFFORT, "x", 0, (design, design), 1, TIMING))
+    assert "of 14 targets are within tolerance; the 10 worst:" in text
+    assert "2 distinct shapes" in text
+    assert len(text.splitlines()) < 20
+
+
+def test_a_solution_without_a_shape_has_a_summary_and_its_reasons():
+    text = guide_text(None, NOTHING)
+    assert text == summary_text(NOTHING)
+    assert "• no\n• never\n• 3 targets asked for, none reached" in text

@@ -1,0 +1,612 @@
+"""Reading tasks and robots: exact values from right files, every mistake of wrong ones, no traceback."""
+
+import dataclasses
+import json
+import math
+import time
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from synth.errors import InputError
+from synth.robot import PRESETS, Interval, JointLimits, MalleableLink, RigidLink, Robot
+from synth.task import (
+    DEFAULT_TOLERANCE,
+    Objective,
+    Task,
+    Topology,
+    load_robot,
+    load_task,
+    parse_task,
+    task_schema,
+)
+
+TASK = """\
+synth: 1                    # version of this format
+name: two crates
+length_unit: mm
+robot: malleable-2dof       # preset | path, relative to this file | mapping
+base: {position: [0, 100, 0], yaw_deg: 90}
+floor: 5
+topology: any               # any | general | puma | scara | spherical
+targets:
+  - {name: pick, position: [512.0, 140.5, 210.0], tolerance: 2.0, weight: 1}
+  - {name: place, position: [-300, 420, 180]}
+objective: least_squares    # | minimax
+obstacles: []
+"""
+
+ROBOT = """\
+name: malleable-2dof
+length_unit: mm
+d12: 58
+link: {length: [550, 700], min_bend_radius: 110, diameter: 50, max_total_bend_deg: 270}
+tip_offset: 20
+d34: 49
+rigid_link: {d35: 455, d45: [455, 460]}
+joint_limits_deg: {base: [10, 350], second: [53, 307]}
+"""
+
+INLINE = """\
+synth: 1
+length_unit: mm
+robot:
+  d12: 58
+  link:
+    length: [550, 700]
+    min_bend_radius: 110
+  d34: 49
+  rigid_link:
+    d35: 455
+    d45: 460
+targets:
+- position: [1, 2, 3]
+"""
+
+AS_READ = Robot(
+    name="malleable-2dof",
+    d12=0.058,
+    link=MalleableLink(Interval(0.55, 0.7), 0.11, diameter=0.05, max_total_bend=math.radians(270)),
+    d34=0.049,
+    tip_offset=0.02,
+    rigid_link=RigidLink(Interval.fixed(0.455), Interval(0.455, 0.46)),
+    joint_limits=JointLimits(
+        Interval(math.radians(10), math.radians(350)), Interval(math.radians(53), math.radians(307))
+    ),
+)
+
+
+def mistakes_in(read, *args, **kwargs):
+    with pytest.raises(InputError) as caught:
+        read(*args, **kwargs)
+    assert caught.value.mistakes
+    return caught.value.mistakes
+
+
+def write(path, content):
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return path
+
+
+class TestRightFiles:
+    def test_example_of_the_interface(self, tmp_path):
+        task = load_task(write(tmp_path / "crates.yaml", TASK))
+        assert task.name == "two crates"
+        assert task.robot == PRESETS["malleable-2dof"]
+        assert task.base.position.tolist() == [0.0, 0.1, 0.0]
+        assert task.base.yaw == math.pi / 2
+        assert task.floor == 0.005
+        assert (task.topology, task.objective) == (Topology.ANY, Objective.LEAST_SQUARES)
+        pick, place = task.targets
+        assert (pick.name, pick.tolerance, pick.weight) == ("pick", 0.002, 1.0)
+        assert pick.position.tolist() == [0.512, 0.1405, 0.21]
+        assert (place.name, place.tolerance, place.weight) == ("place", DEFAULT_TOLERANCE, 1.0)
+        assert place.position.tolist() == [-0.3, 0.42, 0.18]
+
+    def test_least_task_has_the_documented_defaults(self, tmp_path):
+        task = load_task(write(tmp_path / "least.yaml", INLINE))
+        assert task.name == "least"
+        assert task.targets[0].name == "target 1"
+        assert (task.base.position.tolist(), task.base.yaw, task.floor) == ([0.0, 0.0, 0.0], 0.0, 0.0)
+        robot = task.robot
+        assert (robot.name, robot.tip_offset, robot.joint_limits) == ("inline robot", 0.0245, JointLimits())
+        assert robot.link == MalleableLink(Interval(0.55, 0.7), 0.11, diameter=0.0, max_total_bend=math.inf)
+
+    def test_robot_file(self, tmp_path):
+        assert load_robot(write(tmp_path / "robot.yaml", ROBOT)) == AS_READ
+
+    def test_robot_file_is_found_beside_the_task(self, tmp_path):
+        (tmp_path / "robots").mkdir()
+        write(tmp_path / "robots" / "mine.yaml", ROBOT.replace("name: malleable-2dof\n", ""))
+        task = load_task(
+            write(
+                tmp_path / "task.yaml", TASK.replace("malleable-2dof", "robots/mine.yaml").replace("mm", "cm")
+            )
+        )
+        assert task.robot == dataclasses.replace(AS_READ, name="mine")  # in its own unit
+        assert task.targets[0].position.tolist() == [5.12, 1.405, 2.1]
+
+    @pytest.mark.parametrize(
+        ("unit", "d12"), [("", 0.058), ("length_unit: cm", 0.58), ("length_unit: m", 58.0)]
+    )
+    def test_inline_robot_inherits_the_unit_unless_it_states_one(self, unit, d12):
+        assert parse_task(INLINE.replace("  d12", f"  {unit}\n  d12")).robot.d12 == d12
+
+    def test_null_floor_is_no_floor(self):
+        assert parse_task(TASK.replace("floor: 5", "floor: null")).floor is None
+
+    @pytest.mark.parametrize(
+        ("text", "value"),
+        [
+            ("1e-3", 1e-6),
+            ("+2", 0.002),
+            ("0o10", 0.008),
+            ("0x10", 0.016),
+            ("010", 0.01),
+            (".5", 0.0005),
+            ("5.", 0.005),
+        ],
+    )
+    def test_numbers_are_those_of_yaml_1_2(self, text, value):
+        assert parse_task(TASK.replace("tolerance: 2.0", f"tolerance: {text}")).targets[0].tolerance == value
+
+    def test_yes_and_dates_are_text(self):
+        task = parse_task(
+            TASK.replace("name: two crates", "name: yes").replace("name: pick", "name: 2026-11-01")
+        )
+        assert (task.name, task.targets[0].name) == ("yes", "2026-11-01")
+
+    def test_mapping_in_python(self, tmp_path):
+        write(tmp_path / "mine.yaml", ROBOT)
+        task = parse_task(
+            {
+                "synth": 1,
+                "length_unit": "m",
+                "robot": (tmp_path / "mine.yaml").relative_to(tmp_path),
+                "topology": Topology.SCARA,
+                "targets": [{"position": row, "tolerance": np.float64(1e-6)} for row in np.eye(3)]
+                + [{"position": (1, 2, 3)}],
+            },
+            directory=tmp_path,
+            name="from a planner",
+        )
+        assert (task.name, task.topology, task.robot) == ("from a planner", Topology.SCARA, AS_READ)
+        assert task.targets[1].position.tolist() == [0.0, 1.0, 0.0]
+        assert [target.name for target in task.targets] == [f"target {i}" for i in (1, 2, 3, 4)]
+
+    def test_byte_order_mark_and_windows_line_ends(self, tmp_path):
+        content = b"\xef\xbb\xbf" + TASK.replace("\n", "\r\n").encode()
+        assert load_task(write(tmp_path / "task.yaml", content)).name == "two crates"
+
+    def test_two_thousand_targets_are_read_in_seconds(self):
+        rows = "".join(
+            f"  - {{position: [{i}.5, -{i}, 210.0], tolerance: 2.0, weight: 1}}\n" for i in range(2000)
+        )
+        start = time.perf_counter()
+        assert len(parse_task(TASK.replace("objective", rows + "objective")).targets) == 2002
+        assert time.perf_counter() - start < 5.0  # 0.6 s where measured
+
+
+def task(old, new):
+    assert old in TASK
+    return TASK.replace(old, new, 1)
+
+
+def tolerance(text):
+    return task("tolerance: 2.0", f"tolerance: {text}")
+
+
+def inline(old, new):
+    assert old in INLINE
+    return INLINE.replace(old, new, 1)
+
+
+def limits(base):
+    return inline("targets:", f"  joint_limits_deg: {{base: {base}}}\ntargets:")
+
+
+# (content, key, line, words of the message): the only mistake in each.
+WRONG = {
+    # the file as a whole
+    "empty": ("", "", 1, "empty"),
+    "only a comment": ("# nothing\n", "", 1, "empty"),
+    "null": ("---\n", "", 1, "empty"),
+    "a list": ("- 1\n- 2\n", "", 1, "mapping list"),
+    "a scalar": ("three", "", 1, "mapping 'three'"),
+    "binary": (b"\x89PNG\x0d\x0a\x1a\x0a\x00\xff", "", 1, "UTF-8"),
+    "zip": (b"synth: 1\nPK\x03\x04\x00", "", 2, "not a text file '\\x03'"),
+    "latin-1": (task("two crates", "zwei Körbe").encode("latin-1"), "", 2, "UTF-8"),
+    "too large": ("#" * 11_000_000, "", None, "larger"),
+    "flow not closed": (task("[]", "["), "", 13, "YAML"),
+    "tab": (task("  - {name: place", "\t- {name: place"), "", 10, "YAML"),
+    "quote not closed": (task("pick", '"pick'), "", 13, "YAML quoted"),
+    "two documents": (TASK + "---\n" + TASK, "", 14, "second"),
+    "code point beyond Unicode": (task("pick", '"\\UFFFFFFFF"'), "", 9, "YAML"),
+    "deep nesting": (task("[]", "[" * 100_000), "", 12, "nested 20"),
+    "deep nesting in a key": (TASK + "? " * 50_000, "", 13, "nested 20"),
+    # what of YAML is refused
+    "python object": (task("two crates", "!!python/object:os.system x"), "name", 2, "tags python/object"),
+    "custom tag on a list": (
+        task("[512.0, 140.5, 210.0]", "!vec [a, b]"),
+        "targets[0].position",
+        9,
+        "tags !vec",
+    ),
+    "standard tag": (tolerance("!!float 2"), "targets[0].tolerance", 9, "tags"),
+    "alias": (
+        task("two crates", "&a x").replace("name: place", "name: *a"),
+        "targets[1].name",
+        10,
+        "aliases *a",
+    ),
+    "merge key": (TASK + "<<: {name: x}\n", "'<<'", 13, "merge"),
+    "key twice": (TASK + "floor: 7\n", "floor", 13, "twice line 6"),
+    "key twice in flow": (task("weight: 1", "name: a"), "targets[0].name", 9, "twice line 9"),
+    "number as key": (TASK + "1: x\n", "", 13, "keys texts"),
+    "null as key": (TASK + "~: x\n", "", 13, "keys texts"),
+    "list as key": (TASK + "[1, [2, 3]]: {a: 1}\n", "", 13, "keys texts"),
+    "mapping as key": (TASK + "? {a: 1}\n: 2\n", "", 13, "keys texts"),
+    # keys
+    "synth missing": (task("synth: 1 ", ""), "synth", 2, "missing version"),
+    "unit missing": (task("length_unit: mm\n", ""), "length_unit", 1, "missing mm cm m"),
+    "robot missing": (task("robot: malleable-2dof", ""), "robot", 1, "missing preset"),
+    "targets missing": (TASK[: TASK.index("targets")], "targets", 1, "missing"),
+    "position missing": (
+        task("position: [-300, 420, 180]", "weight: 1"),
+        "targets[1].position",
+        10,
+        "missing",
+    ),
+    "key of the robot missing": (inline("    d45: 460\n", ""), "robot.rigid_link.d45", 9, "missing"),
+    "misspelt": (task("tolerance", "tolerence"), "targets[0].tolerence", 9, "did you mean 'tolerance'"),
+    "misspelt and required": (
+        task("length_unit", "lenght_unit"),
+        "lenght_unit",
+        3,
+        "did you mean 'length_unit'",
+    ),
+    "misspelt deep": (
+        inline("min_bend_rad", "min_bent_rad"),
+        "robot.link.min_bent_radius",
+        7,
+        "'min_bend_radius'",
+    ),
+    "capital": (task("floor", "Floor"), "Floor", 6, "did you mean 'floor'"),
+    "unknown": (TASK + "colour: red\n", "colour", 13, "known synth name"),
+    "unknown like a tag of ours": (TASK + "<one>: 1\n", "'<one>'", 13, "known"),
+    "unknown with a line break": (TASK + '"a\\nb": 1\n', "'a\\nb'", 13, "known"),
+    # numbers
+    "text": (tolerance("abc"), "targets[0].tolerance", 9, "number 'abc'"),
+    "number in quotes": (tolerance("'1e-3'"), "targets[0].tolerance", 9, "number '1e-3'"),
+    "sexagesimal": (task("floor: 5", "floor: 12:30:45"), "floor", 6, "number '12:30:45'"),
+    "boolean": (tolerance("true"), "targets[0].tolerance", 9, "number true"),
+    "no value": (
+        task("floor: 5", "floor: 5\n").replace("yaw_deg: 90", "yaw_deg: "),
+        "base.yaw_deg",
+        5,
+        "number empty",
+    ),
+    "nan": (tolerance(".nan"), "targets[0].tolerance", 9, "finite nan"),
+    "infinite": (task("140.5", "-.inf"), "targets[0].position[1]", 9, "finite -inf"),
+    "overflow": (task("140.5", "1e999"), "targets[0].position[1]", 9, "finite"),
+    "huge": (task("140.5", "1e308"), "targets[0].position[1]", 9, "at most 1e+06"),
+    "huge integer": (task("140.5", "-" + "9" * 5000), "targets[0].position[1]", 9, "finite"),
+    "tolerance negative": (tolerance("-2"), "targets[0].tolerance", 9, "greater than 0, but is -2"),
+    "tolerance zero": (tolerance("0"), "targets[0].tolerance", 9, "greater than 0, but is 0"),
+    "tolerance tiny": (tolerance("1e-300"), "targets[0].tolerance", 9, "at least 1e-09"),
+    "weight zero": (task("weight: 1", "weight: 0"), "targets[0].weight", 9, "greater than 0"),
+    "version": (task("synth: 1", "synth: 2"), "synth", 1, "must be 1 version 2"),
+    "version true": (task("synth: 1", "synth: true"), "synth", 1, "must be 1 true"),
+    "version as a float": (task("synth: 1", "synth: 1.0"), "synth", 1, "must be 1 1.0"),
+    # words
+    "unit": (task("length_unit: mm", "length_unit: inch"), "length_unit", 3, "'mm', 'cm' or 'm' 'inch'"),
+    "unit in capitals": (task("length_unit: mm", "length_unit: MM"), "length_unit", 3, "did you mean 'mm'"),
+    "topology": (task("topology: any", "topology: pumma"), "topology", 7, "did you mean 'puma'"),
+    "topology a list": (task("topology: any", "topology: [any]"), "topology", 7, "'any' list"),
+    "objective": (task("least_squares", "minmax"), "objective", 11, "did you mean 'minimax'"),
+    "name a number": (task("name: pick", "name: 7"), "targets[0].name", 9, "text 7"),
+    "name empty": (task("two crates", "' '"), "name", 2, "printable"),
+    "name with a surrogate": (task("two crates", '"\\ud800"'), "name", 2, "characters"),
+    "name twice": (task("name: place", "name: pick"), "targets[1].name", 10, "'pick' targets[0]"),
+    "name of a nameless one": (
+        task("name: pick", "name: target 2").replace("name: place, ", ""),
+        "targets[1].name",
+        10,
+        "'target 2' targets[0]",
+    ),
+    # lists and mappings
+    "two coordinates": (task("[-300, 420, 180]", "[-300, 420]"), "targets[1].position", 10, "3 numbers 2"),
+    "four coordinates": (task("[-300, 420, 180]", "[1, 2, 3, 4]"), "targets[1].position", 10, "3 numbers 4"),
+    "position a number": (task("[-300, 420, 180]", "5"), "targets[1].position", 10, "list 5"),
+    "coordinate a list": (task("-300", "[1, 2]"), "targets[1].position[0]", 10, "number list"),
+    "target a list": (
+        task("{name: place, position: [-300, 420, 180]}", "[1, 2, 3]"),
+        "targets[1]",
+        10,
+        "mapping list",
+    ),
+    "no targets": (TASK[: TASK.index("  - {name: pick")].rstrip() + " []\n", "targets", 8, "one target"),
+    "targets null": (TASK[: TASK.index("  - {name: pick")], "targets", 8, "list empty"),
+    "targets a mapping": (TASK[: TASK.index("  - {name: pick")] + "  a: 1\n", "targets", 8, "list mapping"),
+    "base null": (task("base: {position: [0, 100, 0], yaw_deg: 90}", "base:"), "base", 5, "mapping empty"),
+    # the robot
+    "preset": (task("malleable-2dof", "maleable-2dof"), "robot", 4, "did you mean 'malleable-2dof'"),
+    "preset unlike any": (task("malleable-2dof", "ur5"), "robot", 4, "presets malleable-2dof"),
+    "robot a number": (task("malleable-2dof", "7"), "robot", 4, "preset path mapping 7"),
+    "robot an empty text": (task("malleable-2dof", "''"), "robot", 4, "preset"),
+    "robot file missing": (task("malleable-2dof", "no/such.yaml"), "robot", 4, "such.yaml no such file"),
+    "robot file a directory": (task("malleable-2dof", "./"), "robot", 4, "directory"),
+    "robot file no name": (
+        task("malleable-2dof", '"a\\0.yaml"'),
+        "robot",
+        4,
+        "neither preset path 'a\\x00.yaml'",
+    ),
+    "robot file surrogate": (task("malleable-2dof", '"\\ud800.yaml"'), "robot", 4, "neither preset path"),
+    "robot file name too long": (task("malleable-2dof", "a" * 5000 + ".yaml"), "robot", 4, "cannot be read"),
+    "d12": (inline("58", "0"), "robot.d12", 4, "greater than 0"),
+    "length crossed": (inline("[550, 700]", "[700, 550]"), "robot.link.length", 6, "low high [700, 550]"),
+    "length of three": (inline("[550, 700]", "[1, 2, 3]"), "robot.link.length", 6, "2 numbers 3"),
+    "length no number": (inline("[550, 700]", "long"), "robot.link.length", 6, "number [low, high] 'long'"),
+    "length end": (inline("[550, 700]", "[0, 700]"), "robot.link.length[0]", 6, "greater than 0"),
+    "bend radius": (inline("110", "-110"), "robot.link.min_bend_radius", 7, "greater than 0 -110"),
+    "diameter": (inline("110", "110\n    diameter: 0"), "robot.link.diameter", 8, "greater than 0"),
+    "triangle: d34 long": (inline("d34: 49", "d34: 1000"), "robot.rigid_link", 9, "d35 + d45 915 d34 = 1000"),
+    "triangle: d45 long": (
+        inline("d45: 460", "d45: [505, 600]"),
+        "robot.rigid_link",
+        9,
+        "d45 exceeds d35 50 d34",
+    ),
+    "triangle: d35 long": (
+        inline("d45: 460", "d45: [100, 200]"),
+        "robot.rigid_link",
+        9,
+        "d35 exceeds d45 255",
+    ),
+    "joint limits crossed": (limits("[350, 10]"), "robot.joint_limits_deg.base", 12, "low high"),
+    "joint limits too wide": (limits("[0, 361]"), "robot.joint_limits_deg.base", 12, "360 361"),
+    "joint limits one number": (limits("90"), "robot.joint_limits_deg.base", 12, "list 90"),
+    "joint limits far out": (limits("[0, 1e5]"), "robot.joint_limits_deg.base[1]", 12, "at most 720"),
+    # what a later version brings
+    "surface": (
+        TASK + "surface: {sphere: {center: [0, 0, 0], radius: 1}}\n",
+        "surface",
+        13,
+        "not supported targets",
+    ),
+    "path": (TASK + "path: {csv: a.csv}\n", "path", 13, "not supported targets"),
+    "obstacle": (task("[]", "[{sphere: {center: [0, 0, 0], radius: 1}}]"), "obstacles", 12, "not supported"),
+    "free base": (task("[0, 100, 0]", "[0, [0, 100], 0]"), "base.position[1]", 5, "free base not supported"),
+    "free yaw": (task("yaw_deg: 90", "yaw_deg: [0, 90]"), "base.yaw_deg", 5, "free base not supported"),
+}
+
+
+class TestWrongFiles:
+    @pytest.mark.parametrize(("content", "key", "line", "words"), WRONG.values(), ids=WRONG)
+    def test_the_only_mistake_has_its_place_and_sentence(self, tmp_path, content, key, line, words):
+        path = write(tmp_path / "task.yaml", content)
+        mistakes = mistakes_in(load_task, path)
+        assert [(m.key, m.line, m.file) for m in mistakes] == [(key, line, str(path))]
+        str(mistakes[0]).encode()  # can be printed
+        for word in words.split():
+            assert word in mistakes[0].message
+
+    def test_all_mistakes_of_a_file_come_in_its_order(self):
+        content = (
+            TASK.replace("synth: 1 ", "synth: 3 ")
+            .replace("malleable-2dof", "maleable-2dof")
+            .replace("floor: 5", "floor: {}")
+            .replace("tolerance: 2.0", "tolerence: 2.0")
+            .replace("[-300, 420, 180]", "[-300, x, .nan]")
+            .replace("name: place", "name: pick")
+            .replace("objective", "objectiv")
+        ) + "surface: {}\nname: again\n"
+        assert [(mistake.line, mistake.key) for mistake in mistakes_in(parse_task, content)] == [
+            (1, "synth"),
+            (4, "robot"),
+            (6, "floor"),
+            (9, "targets[0].tolerence"),
+            (10, "targets[1].name"),
+            (10, "targets[1].position[1]"),
+            (10, "targets[1].position[2]"),
+            (11, "objectiv"),
+            (13, "surface"),
+            (14, "name"),
+        ]
+
+    def test_a_triangle_is_checked_beside_other_mistakes_of_the_robot(self):
+        content = inline("d34: 49", "d34: 1000").replace("110", "0")
+        keys = [mistake.key for mistake in mistakes_in(parse_task, content)]
+        assert keys == ["robot.link.min_bend_radius", "robot.rigid_link"]
+
+    def test_a_flat_triangle_is_one(self):
+        parse_task(inline("d34: 49", "d34: 5").replace("d12", "length_unit: m\n  d12"))  # 460 - 455 = 5
+        parse_task(inline("d34: 49", "d34: 0.3").replace("455", "0.1").replace("460", "0.2"))
+
+    @pytest.mark.parametrize("make", [lambda path: path / "none.yaml", lambda path: path, lambda _: "a\0b"])
+    @pytest.mark.parametrize("load", [load_task, load_robot])
+    def test_what_cannot_be_opened_is_named(self, tmp_path, make, load):
+        (mistake,) = mistakes_in(load, make(tmp_path))
+        assert mistake.file == str(make(tmp_path))
+        assert any(word in mistake.message for word in ("no such file", "directory", "cannot be read"))
+
+    def test_unreadable_file(self, tmp_path, monkeypatch):
+        def deny(*_args, **_kwargs):
+            raise PermissionError(13, "Permission denied")
+
+        monkeypatch.setattr("pathlib.Path.open", deny)
+        (mistake,) = mistakes_in(load_task, tmp_path / "task.yaml")
+        assert mistake.message == "cannot be read: Permission denied"
+
+    def test_billion_laughs_cost_nothing(self):
+        levels = "".join(f"b{i}: &b{i} [{', '.join([f'*b{i - 1}'] * 10)}]\n" for i in range(1, 12))
+        mistakes = mistakes_in(parse_task, "b0: &b0 [ha, ha]\n" + levels)
+        assert sum("aliases" in mistake.message for mistake in mistakes) == 110
+
+
+class TestRobotFiles:
+    def test_mistakes_carry_the_name_and_line_of_the_robot_file(self, tmp_path):
+        robot = write(tmp_path / "mine.yaml", ROBOT.replace("d12: 58", "d12: -1").replace("d45", "d46"))
+        path = write(
+            tmp_path / "task.yaml", task("malleable-2dof", "mine.yaml").replace("floor: 5", "floor: low")
+        )
+        assert [(m.file, m.line, m.key) for m in mistakes_in(load_task, path)] == [
+            (str(robot), 3, "d12"),
+            (str(robot), 7, "rigid_link.d46"),
+            (str(path), 6, "floor"),
+        ]
+
+    def test_unit_is_stated(self, tmp_path):
+        robot = write(tmp_path / "mine.yaml", ROBOT.replace("length_unit: mm\n", ""))
+        (mistake,) = mistakes_in(load_robot, robot)
+        assert (mistake.key, mistake.line) == ("length_unit", 1)
+
+    def test_syntax(self, tmp_path):
+        robot = write(tmp_path / "mine.yaml", ROBOT + "a: [\n")
+        (mistake,) = mistakes_in(parse_task, task("malleable-2dof", "mine.yaml"), directory=tmp_path)
+        assert (mistake.file, mistake.line) == (str(robot), 10)
+
+    def test_a_task_is_no_robot_so_nothing_recurs(self, tmp_path):
+        path = write(tmp_path / "task.yaml", task("malleable-2dof", "task.yaml"))
+        (mistake,) = mistakes_in(load_task, path)
+        assert "is a task file" in mistake.message
+
+    def test_a_robot_names_no_robot(self, tmp_path):
+        path = write(tmp_path / "mine.yaml", ROBOT + "robot: mine.yaml\n")
+        (mistake,) = mistakes_in(load_robot, path)
+        assert (mistake.key, mistake.line) == ("robot", 9)
+
+
+class TestMappings:
+    def test_mistakes_have_keys_but_no_file_and_no_line(self):
+        mapping = {
+            "synth": 1,
+            "length_unit": "m",
+            "robot": "malleable-2dof",
+            "targets": [{"position": (1, 2)}],
+            3: 4,
+        }
+        found = mistakes_in(parse_task, mapping)
+        assert [(m.file, m.line, m.key) for m in found] == [
+            (None, None, ""),
+            (None, None, "targets[0].position"),
+        ]
+
+    @pytest.mark.parametrize(
+        "value", [10**400, -(10**400), math.nan, np.array(1j), object(), b"1", {1}, Task]
+    )
+    def test_no_value_gives_another_error(self, value):
+        (mistake,) = mistakes_in(
+            parse_task,
+            {
+                "synth": 1,
+                "length_unit": "m",
+                "robot": "malleable-2dof",
+                "targets": [{"position": [0, 0, value]}],
+            },
+        )
+        assert mistake.key == "targets[0].position[2]"
+
+    def test_a_mapping_inside_itself(self):
+        mapping = {"synth": 1}
+        mapping["base"] = mapping
+        assert any("nested" in mistake.message for mistake in mistakes_in(parse_task, mapping))
+
+
+class TestSchema:
+    def test_is_plain_json_schema(self):
+        schema = task_schema()
+        assert json.loads(json.dumps(schema, allow_nan=False)) == schema
+        text = json.dumps(schema)
+        for bogus in ('"gt"', '"ge"', '"lt"', '"le"', ": null", "<one>"):
+            assert bogus not in text
+
+    def test_has_the_fields_of_the_format(self):
+        schema = task_schema()
+        fields = "synth name length_unit robot base floor topology objective targets obstacles"
+        assert set(schema["properties"]) == set(fields.split())
+        assert set(schema["required"]) == {"synth", "length_unit", "robot", "targets"}
+        assert schema["additionalProperties"] is False
+
+
+def reads_or_refuses(read, *args):
+    try:
+        read(*args)
+    except InputError as error:
+        str(error).encode()  # what it says can be printed
+
+
+PIECES = [
+    *":,[]{}#&*!|>'\"%@`?-~.<\\\n\t \r\0\x07\x85\u2028\ufeff",
+    "<<",
+    "---",
+    "...",
+    "!!",
+    "null",
+    "1e999",
+    "- ",
+    ": ",
+]
+
+
+@st.composite
+def mutations(draw):
+    content = draw(st.sampled_from([TASK, INLINE, ROBOT]))
+    for _ in range(draw(st.integers(1, 4))):
+        start = draw(st.integers(0, len(content)))
+        end = min(len(content), start + draw(st.integers(0, 12)))
+        inserted = draw(st.sampled_from(PIECES) | st.text(max_size=4) | st.just(content[start : end + 40]))
+        content = content[:start] + inserted + content[end:]
+    return content.encode(errors="surrogatepass")
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    return tmp_path_factory.mktemp("fuzz") / "fuzz.yaml"
+
+
+class TestFuzz:
+    @given(content=st.binary(max_size=200))
+    @settings(max_examples=200, derandomize=True)
+    def test_any_bytes(self, path, content):
+        reads_or_refuses(load_task, write(path, content))
+
+    @given(content=mutations())
+    @settings(max_examples=400, derandomize=True)
+    def test_any_mutation(self, path, content):
+        reads_or_refuses(load_task, write(path, content))
+        reads_or_refuses(load_robot, path)
+
+    @given(
+        value=st.recursive(
+            st.none() | st.booleans() | st.integers() | st.floats() | st.text(),
+            lambda inner: st.lists(inner) | st.dictionaries(st.text() | st.integers(), inner),
+            max_leaves=6,
+        ),
+        key=st.sampled_from(
+            [
+                "synth",
+                "name",
+                "length_unit",
+                "robot",
+                "base",
+                "floor",
+                "topology",
+                "objective",
+                "targets",
+                "obstacles",
+            ]
+        ),
+    )
+    @settings(max_examples=300, derandomize=True)
+    def test_any_value(self, value, key):
+        mapping = {
+            "synth": 1,
+            "length_unit": "m",
+            "robot": "malleable-2dof",
+            "targets": [{"position": [1, 1, 1]}],
+        }
+        reads_or_refuses(parse_task, mapping | {key: value})
