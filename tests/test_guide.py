@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from synth.guide import MARKERS, guide_text, make_guide, summary_text
+from synth.guide import MARKERS, guide_text, make_guide, solution_text, summary_text
 from synth.guide.guide import SPACING, hold_angle
 from synth.guide.sensitivity import ShapeTolerance, shape_tolerance, tilt_rate
 from synth.robot import PRESETS, Arm, BasePose, Interval, JointLimits, LinkShape
@@ -40,7 +40,7 @@ JOINTS = [[1.0, 2.0], [4.0, 3.3], [2.5, 4.6]]
 TASK, DESIGN = make_design(ARM, JOINTS, np.zeros((3, 3)))
 GUIDE = make_guide(TASK, DESIGN)
 SOLUTION = Solution(TASK, Status.FOUND, Status.FOUND.sentence, 7, (DESIGN,), 3, TIMING)
-NOTHING = replace(SOLUTION, status=Status.FAILED, message=Status.FAILED.sentence + ": no; never", designs=())
+NOTHING = replace(SOLUTION, status=Status.FAILED, message=f"{Status.FAILED.sentence}: no; never", designs=())
 
 curvature = st.floats(-6.0, 6.0)
 arms = st.builds(
@@ -87,8 +87,8 @@ def test_the_points_of_the_centreline_are_on_the_link_50_mm_apart(arm):
     assert 0.0099 < guide.stations[-1] - guide.stations[-2] < 0.0601
     assert guide.station_names[:2] == ("L050", "L100")
     dense = np.linspace(0.0, arm.shape.length, 4001)
-    link = arm.base.to_task(arm.shape.point_at(dense) + [0.0, 0.0, arm.robot.d12])
-    travelled = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(link, axis=0), axis=1))])
+    link = arm.base.to_task(arm.shape.point_at(dense) + arm.base_joint[1])
+    travelled = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(link, axis=0), axis=1)))
     for station, point in zip(guide.stations, both[0].centreline, strict=True):
         nearest = np.argmin(np.linalg.norm(link - point, axis=1))
         assert np.linalg.norm(link[nearest] - point) < 1e-4
@@ -225,3 +225,19 @@ def test_a_solution_without_a_shape_has_a_summary_and_its_reasons():
     text = guide_text(None, NOTHING)
     assert text == summary_text(NOTHING)
     assert "• no\n• never\n• 3 targets asked for, none reached" in text
+
+
+def test_the_other_shapes_have_a_line_each_on_request():
+    both = replace(SOLUTION, designs=(DESIGN, DESIGN))
+    assert solution_text(both) == guide_text(GUIDE, both)
+    assert solution_text(SOLUTION, alternatives=True) == guide_text(GUIDE, SOLUTION)
+    assert solution_text(both, alternatives=True).splitlines()[-1].startswith("  2  worst miss")
+    assert solution_text(NOTHING, alternatives=True) == summary_text(NOTHING)
+
+
+def test_a_joint_that_turns_all_round_has_no_limit_at_its_end():
+    arm = make_arm(robot=FREE)
+    for theta1 in (math.pi, math.pi - 1e-3):
+        point = arm.forward_kinematics(theta1, 2.0)
+        rate = tilt_rate(arm, point, np.array([theta1, 2.0]))
+        assert rate == pytest.approx(tilt_rate(arm, arm.forward_kinematics(0.0, 2.0), np.array([0.0, 2.0])))

@@ -26,7 +26,7 @@ _SCALES = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.5, 10.0)
 
 def draw(page: Page, solution: Solution, scene: Scene) -> None:
     """Draw the top view above the front view, the side view right of it, the section in the corner."""
-    room = np.array([WIDTH - 2 * MARGIN - _TICKS - _GAP_X + 5.0, HEIGHT - _TOP - 16.0 - _GAP_Y])
+    room = np.array([WIDTH - 2 * MARGIN - _TICKS - _GAP_X + 5.0, HEIGHT - _TOP - 18.0 - _GAP_Y])
     lowest, highest = scene.bounds
     size = highest - lowest
     scale = _scale(size, room)
@@ -54,7 +54,7 @@ def draw(page: Page, solution: Solution, scene: Scene) -> None:
     if solution.designs:
         _section(page, solution, scene, (right, upper, depth))
     legend = (
-        "Blue: link at the angle to hold. Grey: arm at target 1. Orange: axes of the joints. "
+        "Outlined: link at the angle to hold. Dashed: arm at target 1. Dash-dotted: axes of the joints. "
         "Dot: target reached; cross: missed. Section: ρ is the distance from axis 1; solid within the "
         "limits of joint 2, dashed beyond."
     )

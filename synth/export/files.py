@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from synth.errors import SynthError
 from synth.export.markers import markers_csv
-from synth.export.sheet import sheet
+from synth.export.sheet import draw_sheet
 from synth.export.solution_json import solution_to_json
 from synth.guide import make_guide
 
@@ -36,7 +37,7 @@ def write_files(solution: Solution, directory: str | os.PathLike[str]) -> list[P
     content = json.dumps(solution_to_json(solution), indent=1, allow_nan=False, ensure_ascii=False)
     files = {
         "solution.json": (content + "\n").encode(),
-        "guide.pdf": sheet(solution, guide),
+        "guide.pdf": draw_sheet(solution, guide),
         "markers.csv": markers_csv(guide).encode(),
     }
     directory = Path(directory)
@@ -44,8 +45,28 @@ def write_files(solution: Solution, directory: str | os.PathLike[str]) -> list[P
         directory.mkdir(parents=True, exist_ok=True)
         return _replace({directory / name: content for name, content in files.items()})
     except OSError as error:
-        reason = error.strerror or str(error)
-        raise SynthError(f"cannot write to {directory}: {reason}") from error
+        raise _cannot_write(directory, error) from error
+
+
+def prepare_directory(directory: str | os.PathLike[str]) -> None:
+    """Make a directory and see that files can be written there, before a search spends its time.
+
+    Args:
+        directory: The directory; it may be there.
+
+    Raises:
+        SynthError: Files cannot be written there.
+    """
+    try:
+        Path(directory).mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=directory):
+            pass
+    except OSError as error:
+        raise _cannot_write(Path(directory), error) from error
+
+
+def _cannot_write(directory: Path, error: OSError) -> SynthError:
+    return SynthError(f"cannot write to {directory}: {error.strerror or error}")
 
 
 def _replace(files: Mapping[Path, bytes]) -> list[Path]:

@@ -30,7 +30,7 @@ _TARGETS_BOTTOM, _TARGET_PITCH = 124.5, 3.6
 _MOST_POINTS, _MOST_TARGETS = 20, 7
 
 
-def sheet(solution: Solution, guide: Guide | None, file_format: str = "pdf") -> bytes:
+def draw_sheet(solution: Solution, guide: Guide | None, file_format: str = "pdf") -> bytes:
     """Return the page: status, what to do, the points to be met, tolerances, and the drawings.
 
     The points and the blue link are those at `guide.hold`; lengths are in mm, in the task frame.

@@ -2,7 +2,7 @@
 
 from synth.guide.guide import LINK_END, MARKERS, Guide, Placement, make_guide
 from synth.guide.sensitivity import ShapeTolerance
-from synth.guide.text import guide_text, summary_text
+from synth.guide.text import guide_text, solution_text, summary_text
 
 __all__ = [
     "LINK_END",
@@ -12,5 +12,6 @@ __all__ = [
     "ShapeTolerance",
     "guide_text",
     "make_guide",
+    "solution_text",
     "summary_text",
 ]

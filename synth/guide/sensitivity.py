@@ -19,6 +19,10 @@ if TYPE_CHECKING:
 # A miss below this has no direction but that of rounding: the surface's normal takes its place.
 _ON_THE_SURFACE = 1e-6  # m
 _AT_A_LIMIT = 1e-6  # rad
+_WHOLE_TURN = 2.0 * math.pi - 1e-9  # rad
+# A tilt that turns P5 along the surface is bounded by nothing in first order; a right angle is no small
+# error any more.
+_NO_RATE, _LARGEST_TILT = 1e-12, 0.5 * math.pi  # m/rad, rad
 # Velocities of P5 this nearly parallel are those of the rim of the workspace, which P5 can leave in two
 # directions; on a circle of 0.5 m it begins 0.03 mm inside the rim.
 _NEARLY_SINGULAR = 1e-2
@@ -38,7 +42,7 @@ class ShapeTolerance:
         position: Shift of axis 2, its direction kept, m. No first order here: a shift by d moves the
             whole workspace surface by d, hence position = min (tolerance - miss).
         position_target: Name of the target that is lost first, or empty.
-        direction: Tilt of axis 2 about the link's end, rad; to first order.
+        direction: Tilt of axis 2 about the link's end, rad; to first order, and at most pi/2.
         direction_target: Name of the target that is lost first, or empty.
     """
 
@@ -64,7 +68,7 @@ def shape_tolerance(task: Task, design: Design) -> ShapeTolerance:
             slack = target.tolerance - float(miss)
             rate = tilt_rate(design.arm, target.position, joints)
             shifts.append((slack, target.name))
-            tilts.append((slack / rate if rate > 0.0 else math.inf, target.name))
+            tilts.append((min(slack / max(rate, _NO_RATE), _LARGEST_TILT), target.name))
     if not shifts:
         return ShapeTolerance()
     return ShapeTolerance(*min(shifts), *min(tilts))
@@ -114,8 +118,9 @@ def _normals(arm: Arm, end_effector: FloatArray, theta1: float, theta2: float) -
     about_axis_1 = np.array([-end_effector[1], end_effector[0], 0.0])
     about_axis_2 = np.cross(arm.circle.axis, end_effector - arm.circle.centre)
     velocities = np.stack([about_axis_1, about_axis_2])
+    # A range of a whole turn has ends, but no limits.
     free = [
-        interval.contains(angle, slack=-_AT_A_LIMIT)
+        interval.contains(angle, slack=-_AT_A_LIMIT) or interval.upper - interval.lower >= _WHOLE_TURN
         for interval, angle in ((limits.base, theta1), (limits.second, theta2))
     ]
     _, singular, directions = np.linalg.svd(velocities[free])

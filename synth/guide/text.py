@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.guide.guide import make_guide
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from synth.guide.guide import Guide
     from synth.robot import LinkShape
-    from synth.synthesis.solution import Solution, TargetResult
+    from synth.synthesis.solution import Design, Solution, TargetResult
 
 _MOST_TARGETS = 10
 
@@ -68,6 +70,26 @@ def guide_text(guide: Guide | None, solution: Solution) -> str:
     return "\n".join([summary, "", *lines, *tolerance_sentences(guide)])
 
 
+def solution_text(solution: Solution, *, alternatives: bool = False) -> str:
+    """Return all that the terminal shows of a result: the summary, and the guide if there is a shape.
+
+    Args:
+        solution: The result.
+        alternatives: Whether the other shapes get a line each, too.
+
+    Returns:
+        Lines without a line break at the end.
+    """
+    guide = make_guide(solution.task, solution.designs[0]) if solution.designs else None
+    lines = [guide_text(guide, solution)]
+    if alternatives and solution.designs[1:]:
+        lines += ["", "Other shapes, the next best first:"]
+        lines += [
+            f"{number:>3}  {_shape_line(design)}" for number, design in enumerate(solution.designs[1:], 2)
+        ]
+    return "\n".join(lines)
+
+
 def hold_sentence(guide: Guide) -> str:
     """Return what to do with joint 1 while the link is bent."""
     return f"Set joint 1 to {math.degrees(guide.hold.joint1):z.1f} deg and hold it there."
@@ -102,6 +124,12 @@ def tolerance_sentences(guide: Guide) -> tuple[str, ...]:
         f"Hold axis 2 within {both}; within half of each if both are off.",
         f"P3 or P4 off by {marker:.2f} mm across the axis is a tilt of {tilt:.2f} deg.",
     )
+
+
+def _shape_line(design: Design) -> str:
+    """Return one of several shapes in a line."""
+    worst = 1e3 * float(design.verification.misses.max())
+    return f"worst miss {worst:8.3f} mm  {link_sentence(design.arm.shape)}, {design.arm.category.value}"
 
 
 def _target_lines(targets: Sequence[TargetResult]) -> list[str]:

@@ -21,8 +21,7 @@ from synth.geometry import (
 from synth.robot.base import BasePose
 from synth.robot.kinematics import Kinematics, into_turn
 
-# rad: branches nearer than this are one, met twice
-_SAME_BRANCH = 1e-7
+_SAME_BRANCH = 1e-5  # rad; branches nearer than this are one, met twice
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -173,12 +172,12 @@ class Arm:
         miss = np.linalg.norm(reached - point[..., None, :], axis=-1)
         if within_limits:
             miss[~limits.contain(joints)] = np.inf
+        order = np.argsort(miss, axis=-1, stable=True)
+        joints = np.take_along_axis(joints, order[..., None], axis=-2)
+        miss = np.take_along_axis(miss, order, axis=-1)
         same = np.abs(joints[..., 0, :] - joints[..., 1, :]).max(axis=-1) < _SAME_BRANCH
         miss[..., 1] = np.where(same, np.inf, miss[..., 1])
-        order = np.argsort(miss, axis=-1, stable=True)
-        return JointBranches(
-            np.take_along_axis(joints, order[..., None], axis=-2), np.take_along_axis(miss, order, axis=-1)
-        )
+        return JointBranches(joints, miss)
 
     def closest_joints(self, points: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Return the joint angles within the limits that come closest to points, and their misses.

@@ -13,12 +13,13 @@ if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.robot.hardware import Interval, JointLimits
 
-# Twice the spacing of this grid, about 3 deg, brackets every minimum of the miss over joint 2, a
-# function of few harmonics; the golden section then shrinks the bracket below 1e-8 rad.
-_GRID = 241
-_GOLDEN_STEPS = 36
+# Over joint 2 the miss has few valleys, as it has few harmonics; the spacing of this grid is about
+# 2 deg. The golden section narrows each valley to 1e-5 rad, Newton's method to rounding.
+_GRID = 181
+_VALLEYS = 3
+_GOLDEN_STEPS = 18
 _GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
-_NEWTON_STEPS = 4
+_NEWTON_STEPS = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,20 +151,26 @@ class Kinematics:
         point = point[..., None, :]
         second = limits.second
         grid = np.linspace(second.lower, second.upper, _GRID)
-        best = np.argmin(one.miss(grid, point, limits.base), axis=-1)[..., None]
-        lower, upper = grid[np.maximum(best - 1, 0)], grid[np.minimum(best + 1, _GRID - 1)]
+        misses = one.miss(grid, point, limits.base)
+        padded = np.pad(misses, [(0, 0)] * (misses.ndim - 1) + [(1, 1)], constant_values=np.inf)
+        valleys = (misses <= padded[..., :-2]) & (misses <= padded[..., 2:])
+        deepest = np.argsort(np.where(valleys, misses, np.inf), axis=-1)[..., :_VALLEYS]
+        lower, upper = grid[np.maximum(deepest - 1, 0)], grid[np.minimum(deepest + 1, _GRID - 1)]
         for _ in range(_GOLDEN_STEPS):
             span = _GOLDEN * (upper - lower)
             left, right = upper - span, lower + span
             left_is_better = one.miss(left, point, limits.base) < one.miss(right, point, limits.base)
             lower, upper = np.where(left_is_better, lower, left), np.where(left_is_better, right, upper)
-        # The middle of the bracket is inside it, so that an end of the joint range is tried as well.
+        # The bracket's middle, or one of its ends where that is an end of the joint range.
         theta2 = np.concatenate([lower, 0.5 * (lower + upper), upper], axis=-1)
-        misses = one.miss(theta2, point, limits.base)
+        joints = np.stack([one.best_theta1(theta2, point, limits.base), theta2], axis=-1)
+        # Newton's method has the last word wherever it stays within the limits.
+        polished = one.polished(joints, point)
+        joints = np.where(limits.contain(polished, slack=0.0)[..., None], polished, joints)
+        misses = np.linalg.norm(one.forward(joints[..., 0], joints[..., 1]) - point, axis=-1)
         best = np.argmin(misses, axis=-1)[..., None]
-        theta2 = np.take_along_axis(theta2, best, axis=-1)
-        theta1 = one.best_theta1(theta2, point, limits.base)
-        return np.concatenate([theta1, theta2], axis=-1), np.take_along_axis(misses, best, axis=-1)[..., 0]
+        joints = np.take_along_axis(joints, best[..., None], axis=-2)[..., 0, :]
+        return joints, np.take_along_axis(misses, best, axis=-1)[..., 0]
 
 
 def into_turn(angle: FloatArray, middle: float) -> FloatArray:

@@ -6,6 +6,7 @@ of some hundred starts lead anywhere, so that the nonlinear program need not try
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,9 +25,22 @@ _ARM_LENGTH = 0.5  # an axis 1 rad off its category puts P5 about this far off, 
 _LEAST_DAMPING, _MOST_DAMPING = 1e-9, 1e9
 
 
-def refine(
-    task: Task, population: Population, theta2: FloatArray
-) -> tuple[Population, FloatArray, FloatArray]:
+@dataclass(frozen=True, eq=False)
+class Refined:
+    """Shapes at the bottoms of their valleys, or nearly.
+
+    Attributes:
+        population: The shapes, of shape (N,).
+        joints: Their joint angles for each target, shape (N, n, 2), rad.
+        cost: Their mean squared misses, weighted with `relative_weights`, shape (N,), m^2.
+    """
+
+    population: Population
+    joints: FloatArray
+    cost: FloatArray
+
+
+def refine(task: Task, population: Population, theta2: FloatArray) -> Refined:
     """Improve shapes by damped Gauss-Newton steps, their limits and those of the joints observed.
 
     Each target keeps its own joint angles, which follow the shape: the residual is what is left of
@@ -38,8 +52,7 @@ def refine(
         theta2: Angle of joint 2 at which each start is nearest to each target, shape (N, n), rad.
 
     Returns:
-        The improved shapes, their joint angles, shape (N, n, 2), rad, and their mean squared misses
-        relative to the least tolerance's share, shape (N,), m^2 (see `relative_weights`).
+        The improved shapes.
     """
     points, limits = task.positions, task.robot.joint_limits
     weights = relative_weights(task)
@@ -57,7 +70,7 @@ def refine(
         joints = np.where(better[:, None, None], moved_joints, joints)
         cost = np.where(better, moved_cost, cost)
         damping = np.clip(np.where(better, 0.2 * damping, 8.0 * damping), _LEAST_DAMPING, _MOST_DAMPING)
-    return population, joints, cost
+    return Refined(population, joints, cost)
 
 
 def relative_weights(task: Task) -> FloatArray:

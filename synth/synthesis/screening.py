@@ -6,6 +6,7 @@ finds it nearly always, and looking at a shape is ten thousand times cheaper tha
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,7 @@ import numpy as np
 
 from synth.robot import Arm, into_turn
 from synth.synthesis.population import Population
-from synth.synthesis.refinement import category_offsets, refine, relative_weights
+from synth.synthesis.refinement import Refined, category_offsets, refine, relative_weights
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -31,6 +32,11 @@ _DISTINCT = 0.03
 _ARM_LENGTH = 0.5
 # Mean squared misses below this, m^2, are all as good: then the gentler bend goes first.
 _SETTLED = 1e-8
+# After so many starts have not found it, the best shapes are tried again with branches swapped.
+_BEFORE_SWAPS = 12
+_SWAPPED = 8
+_SWAP_CHANCES = (0.1, 0.25, 0.5, 1.0)
+_SHEET = 0.04  # a branch that misses by more than this, m, is no other sheet of the same surface
 
 
 @dataclass(frozen=True)
@@ -60,15 +66,52 @@ def starts(task: Task, rng: np.random.Generator) -> Iterator[Start]:
     population = population.take(np.argsort(cost, kind="stable")[:_SHORTLIST])
     theta2, misses = limited_misses(task, population)
     cost = _costs(task, misses) + _category_cost(task, population)
-    refined = np.argsort(cost, kind="stable")[:_REFINED]
-    population, joints, cost = refine(task, population.take(refined), theta2[:, refined].T)
-    _, position = population.end
-    poses = np.hstack([position, _ARM_LENGTH * population.end[0][:, :, 0]])
+    promising = np.argsort(cost, kind="stable")[:_REFINED]
+    refined = refine(task, population.take(promising), theta2[:, promising].T)
+    yield from itertools.islice(_distinct(task, refined), _BEFORE_SWAPS)
+    yield from _distinct(task, refine(task, *_with_swapped_branches(task, refined, rng)))
+
+
+def _distinct(task: Task, refined: Refined) -> Iterator[Start]:
+    """Yield starts in the order of their misses, those aside that are nearly one yielded before."""
+    population = refined.population
+    frame, position = population.end
+    poses = np.hstack([position, _ARM_LENGTH * frame[:, :, 0]])
     taken = np.empty((0, poses.shape[1]))
-    for index in np.lexsort([population.bending, np.maximum(cost, _SETTLED)]):
+    for index in np.lexsort([population.bending, np.maximum(refined.cost, _SETTLED)]):
         if np.all(np.linalg.norm(taken - poses[index], axis=1) > _DISTINCT):
             taken = np.vstack([taken, poses[index]])
-            yield Start(population.arm(index, task.base), joints[index])
+            yield Start(population.arm(index, task.base), refined.joints[index])
+
+
+def _with_swapped_branches(
+    task: Task, refined: Refined, rng: np.random.Generator
+) -> tuple[Population, FloatArray]:
+    """Return the best shapes many times over, some targets moved to their other branch of joint 2.
+
+    Where the axes nearly meet, the workspace has two sheets a few millimetres apart, and which target
+    belongs to which sheet is a riddle that no local step solves.
+
+    Args:
+        task: The task.
+        refined: Shapes at the bottoms of their valleys.
+        rng: Source of randomness.
+
+    Returns:
+        Shapes, of shape (N,), and the angles of joint 2 to refine them from, shape (N, n), rad.
+    """
+    best = np.argsort(refined.cost, kind="stable")[:_SWAPPED]
+    population, theta2 = refined.population.take(best), refined.joints[best, :, 1]
+    limits, kinematics = task.robot.joint_limits, population.kinematics.each_target()
+    both = into_turn(kinematics.branches(task.positions)[..., 1], limits.second.middle)
+    other = np.argmax(np.abs(both - theta2[..., None]), axis=-1)
+    swapped = np.take_along_axis(both, other[..., None], axis=-1)[..., 0]
+    swapped = np.clip(swapped, limits.second.lower, limits.second.upper)
+    near = kinematics.miss(swapped, task.positions, limits.base) < _SHEET
+    copies = np.repeat(np.arange(len(best)), _REFINED // len(best))
+    chance = rng.choice(_SWAP_CHANCES, len(copies))
+    swap = near[copies] & (rng.uniform(size=(len(copies), len(task.targets))) < chance[:, None])
+    return population.take(copies), np.where(swap, swapped[copies], theta2[copies])
 
 
 def estimated_misses(task: Task, population: Population) -> FloatArray:

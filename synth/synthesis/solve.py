@@ -25,8 +25,10 @@ if TYPE_CHECKING:
     from synth.robot import Arm
     from synth.task import Task
 
-_STARTS_WHEN_FOUND = 8  # enough for distinct and gentle alternatives
 _STARTS_AT_MOST = 48
+_STARTS_AFTER_FOUND = 6  # for distinct, gentler and nearer alternatives
+# A found shape that uses less than this part of every tolerance leaves the rest to the hand.
+_AMPLE = 0.2
 # Two shapes nearer than this all along are one: a hand places the link to about 10 mm (facts of the
 # published follow-up: 9.6 +- 2.1 mm).
 _SAME_SHAPE = 0.010
@@ -89,6 +91,7 @@ class _Search:
     blocked: list[Design] = field(default_factory=list)
     breakdowns: list[str] = field(default_factory=list)
     starts: int = 0
+    starts_found: int = 0  # since a shape was found, that start included
     interrupted: bool = False
 
     def __post_init__(self) -> None:
@@ -107,8 +110,9 @@ class _Search:
             nlp = nlp or self._timed_nlp(0.0)
             self._polish(nlp, start)
             self.starts += 1
+            self.starts_found += self._found()
             self._report()
-            if self.starts >= (_STARTS_WHEN_FOUND if self._found() else _STARTS_AT_MOST):
+            if self.starts >= _STARTS_AT_MOST or self.starts_found > _STARTS_AFTER_FOUND:
                 break
             began = time.perf_counter()
 
@@ -190,14 +194,18 @@ class _Search:
         self.progress(Progress(self.starts, _STARTS_AT_MOST, worst, self._found()))
 
 
-def _rank(task: Task, design: Design) -> tuple[bool, float]:
-    """Return what is smaller for a better design: found ones by gentleness, others by their misses."""
+def _rank(task: Task, design: Design) -> tuple[int, float]:
+    """Return what is smaller for a better design.
+
+    First those that reach every target with tolerance to spare, then those that just do, both by
+    their gentleness; then the others by the task's objective.
+    """
     check = design.verification
+    relative = check.misses / task.tolerances
     if check.found:
-        return False, design.arm.shape.bending_energy
-    weighted = task.weights * (check.misses / task.tolerances) ** 2
-    minimax = task.objective is Objective.MINIMAX
-    return True, float(weighted.max() if minimax else weighted.sum())
+        return int(relative.max() > _AMPLE), design.arm.shape.bending_energy
+    weighted = task.weights * relative**2
+    return 2, float(weighted.max() if task.objective is Objective.MINIMAX else weighted.sum())
 
 
 def _distinct(designs: list[Design]) -> tuple[Design, ...]:

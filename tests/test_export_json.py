@@ -1,0 +1,184 @@
+"""`solution.json` against the contract, read by a second implementation of its conventions."""
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from synth.export import solution_to_json
+from synth.robot import PRESETS, Arm, BasePose, LinkShape
+from synth.synthesis import Design, Solution, Status, Timing, verify
+from synth.task import PointTarget, Task
+
+ROBOT = PRESETS["malleable-2dof"]
+BASE = BasePose([0.1, -0.2, 0.05], 0.7)
+PAIRS = ["12", "13", "14", "23", "24", "34", "35", "45"]
+
+
+def make_solution(tolerance=2e-3, offset=1e-4):
+    designs, task = [], None
+    for sign in (1.0, -1.0):
+        shape = LinkShape([[3.0, sign], [-2.0, 4.0 * sign], [1.0, 5.0 * sign]], [0.2, 0.21, 0.22])
+        arm = Arm(ROBOT, shape, 0.455, 0.460, BASE)
+        if task is None:
+            points = arm.forward_kinematics([1.0, 4.0, 2.5], [2.0, 3.3, 4.6]) + np.array([0.0, 0.0, offset])
+            targets = tuple(PointTarget(f"t{i}", point, tolerance) for i, point in enumerate(points))
+            task = Task("crates", ROBOT, targets, BASE, floor=None)
+        designs.append(Design(arm, verify(task, arm)))
+    status = Status.FOUND if designs[0].verification.found else Status.BEST_EFFORT
+    return Solution(task, status, status.sentence, 7, tuple(designs), 3, Timing(1.0, 0.25, 0.5, 0.25))
+
+
+SOLUTION = make_solution()
+NOTHING = replace(SOLUTION, status=Status.FAILED, message="the solver broke down", designs=())
+
+
+def read_back(solution):
+    return json.loads(json.dumps(solution_to_json(solution), allow_nan=False))
+
+
+def rotation(vector):
+    angle = np.linalg.norm(vector)
+    if angle == 0.0:
+        return np.eye(3)
+    x, y, z = vector / angle
+    k = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + math.sin(angle) * k + (1.0 - math.cos(angle)) * k @ k
+
+
+def end_frame(content):
+    """P2 and the link's end, by many small steps along each arc: nothing here is in closed form."""
+    position, frame = np.array([0.0, 0.0, content["distances"]["12"]]), np.eye(3)
+    for arc in content["link"]["arcs"]:
+        (kx, ky), count = arc["curvature"], 2000
+        step = arc["length"] / count
+        half = rotation(0.5 * step * np.array([-ky, kx, 0.0]))
+        for _ in range(count):
+            position = position + step * (frame @ half)[:, 2]
+            frame = frame @ half @ half
+    return position, frame
+
+
+def in_task(content, points):
+    base = content["base"]
+    return points @ rotation([0.0, 0.0, base["yaw"]]).T + base["position"]
+
+
+def forward(content, tip_offset):
+    """P5 of every target, from the arcs and the joint angles, as the interface describes it."""
+    position, frame = end_frame(content)
+    u, t = frame[:, 0], frame[:, 2]
+    s, d34 = content["squared_distances"], content["distances"]["34"]
+    along = (s["35"] - s["45"] + s["34"]) / (2.0 * d34)
+    radius = math.sqrt(s["35"] - along**2)
+    centre = position - tip_offset * u + along * u
+    points = []
+    for target in content["targets"]:
+        theta1, theta2 = target["joints"]
+        point = centre + radius * (-math.cos(theta2) * t - math.sin(theta2) * np.cross(u, t))
+        points.append(rotation([0.0, 0.0, theta1]) @ point)
+    return in_task(content, np.array(points))
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e-4, 5e-3])
+def test_the_misses_follow_from_the_arcs_and_angles_alone(offset):
+    content = read_back(make_solution(offset=offset))
+    reached = forward(content, ROBOT.tip_offset)
+    for target, point in zip(content["targets"], reached, strict=True):
+        np.testing.assert_allclose(point, target["reached"], atol=1e-7)
+        miss = np.linalg.norm(point - target["position"])
+        assert miss == pytest.approx(target["miss"], abs=1e-7)
+        assert target["within_tolerance"] == (target["miss"] <= target["tolerance"])
+    assert content["status"] == ("found" if offset < 2e-3 else "best_effort")
+
+
+def test_guide_distances_and_centreline_follow_from_the_arcs():
+    content = read_back(SOLUTION)
+    position, frame = end_frame(content)
+    p3 = position - ROBOT.tip_offset * frame[:, 0]
+    p4 = p3 + ROBOT.d34 * frame[:, 0]
+    points = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, ROBOT.d12], p3, p4])
+    markers = np.array([content["guide"]["markers"][name] for name in ("P1", "P2", "P3", "P4")])
+    np.testing.assert_allclose(markers, in_task(content, points), atol=1e-7)
+    held = rotation([0.0, 0.0, content["guide"]["hold"]["joint1"]])
+    hold = np.array(list(content["guide"]["hold"]["markers"].values()))
+    np.testing.assert_allclose(hold, in_task(content, points @ held.T), atol=1e-7)
+    for pair in PAIRS[:6]:
+        i, j = (int(digit) - 1 for digit in pair)
+        assert np.linalg.norm(markers[i] - markers[j]) == pytest.approx(content["distances"][pair])
+        assert content["distances"][pair] ** 2 == pytest.approx(content["squared_distances"][pair])
+    centreline = np.array(content["link"]["centreline"])
+    np.testing.assert_allclose(
+        centreline[[0, -1]], in_task(content, np.array([points[1], position])), atol=1e-7
+    )
+    steps = np.linalg.norm(np.diff(centreline, axis=0), axis=1)
+    assert steps.max() <= 0.01
+    assert steps.sum() == pytest.approx(content["link"]["length"], rel=1e-3)
+    np.testing.assert_allclose(content["guide"]["axis2"]["direction"], (markers[3] - markers[2]) / ROBOT.d34)
+
+
+def test_gamma_and_the_invariants_vanish_where_the_end_effector_is():
+    content = read_back(SOLUTION)
+    q, d12, inv = content["gamma"]["q"], content["distances"]["12"], content["invariants"]
+    base = content["base"]
+    reached = np.array([target["reached"] for target in content["targets"]]) - base["position"]
+    x, y, z = (reached @ rotation([0.0, 0.0, base["yaw"]])).T
+    n = x**2 + y**2 + z**2
+    terms = [q[0] * n**2, q[1] * d12 * z * n, q[2] * (x**2 + y**2), q[3] * z**2, q[4] * d12 * z, q[5] + 0 * z]
+    assert np.all(np.abs(sum(terms)) < 1e-10 * np.abs(terms).sum(axis=0))
+    a, alpha, z0, h, radius = (inv[name] for name in ("a", "alpha", "z0", "h", "R"))
+    zc, k = z0 + h * math.cos(alpha), a**2 + h**2 + radius**2
+    form = (n - 2 * z0 * z + z0**2 - k) ** 2 + 4 * (a / math.sin(alpha)) ** 2 * (z - zc) ** 2
+    np.testing.assert_allclose(form, 4 * a**2 * radius**2, atol=1e-10)
+
+
+def test_the_fields_of_the_contract_are_there():
+    content = read_back(SOLUTION)
+    assert content["schema"] == "synth.solution/1"
+    assert list(content["distances"]) == list(content["squared_distances"]) == PAIRS
+    assert set(content["time"]) == {"total", "screening", "solving", "verifying"}
+    assert (content["seed"], content["starts"], content["task"]) == (7, 3, "crates")
+    assert content["category"] in {"general", "puma", "scara", "spherical"}
+    assert set(content["category_distances"]) == {"puma", "scara", "spherical"}
+    assert content["bound"] is None
+    assert set(content["targets"][0]) == {
+        "name", "position", "reached", "miss", "tolerance", "within_tolerance", "joints", "alternatives",
+    }  # fmt: skip
+    assert set(content["guide"]["tolerance"]) >= {"position", "direction"}
+    (other,) = content["alternatives"]
+    assert set(other) == {"distances", "category", "link", "targets"}
+    assert "centreline" not in other["link"]
+    assert [target["name"] for target in other["targets"]] == ["t0", "t1", "t2"]
+
+
+def test_other_postures_of_a_target_are_pairs_of_angles():
+    """Straight up, the axes meet: targets have two postures, where the limits of the joints allow both."""
+    arm = Arm(ROBOT, LinkShape([[0.0, 0.0]], [0.6]), 0.455, 0.460)
+    target = PointTarget("t", arm.forward_kinematics(2.0, 2.5))
+    task = Task("straight", ROBOT, (target,))
+    design = Design(arm, verify(task, arm))
+    content = read_back(replace(SOLUTION, task=task, designs=(design,)))
+    (pair,) = content["targets"][0]["alternatives"]
+    np.testing.assert_allclose(arm.forward_kinematics(*pair), target.position, atol=1e-6)
+    assert content["link"]["min_bend_radius"] is None  # a straight link has an infinite one
+
+
+def test_without_a_shape_the_targets_are_listed_and_the_rest_is_null():
+    content = read_back(NOTHING)
+    assert content["status"] == "failed"
+    for field in (
+        "distances", "squared_distances", "gamma", "invariants", "category", "category_distances", "base",
+        "link", "guide", "bound",
+    ):  # fmt: skip
+        assert content[field] is None, field
+    assert set(content) == set(read_back(SOLUTION))
+    assert [target["name"] for target in content["targets"]] == ["t0", "t1", "t2"]
+    assert all(target["miss"] is None and not target["within_tolerance"] for target in content["targets"])
+    assert content["alternatives"] == []
+
+
+def test_what_json_cannot_hold_is_null():
+    missed = make_solution(tolerance=1e-9, offset=0.02)
+    assert read_back(missed)["guide"]["tolerance"]["position"] is None
