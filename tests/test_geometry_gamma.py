@@ -44,7 +44,7 @@ def factor(arm):
 class TestDerivation:
     def test_is_not_needed_to_use_the_polynomials(self):
         code = "import sys, synth.geometry; sys.exit(bool({'sympy', 'scipy', 'casadi'} & set(sys.modules)))"
-        assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0  # noqa: S603  # our own text
+        assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0  # our own text
 
     def test_polynomials_equal_the_bordered_determinant(self):
         q, c = workspace_polynomials(*sympy.symbols(derivation.ARGUMENTS))

@@ -19,6 +19,8 @@ from synth.synthesis.refinement import Refined, category_offsets, refine, relati
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from numpy.typing import NDArray
+
     from synth.arrays import FloatArray
     from synth.task import Task
 
@@ -27,6 +29,8 @@ _SHORTLIST = 4000
 _REFINED = 400
 # Misses are only compared up to here, m: beyond, a shape is far off and by how much says little.
 _FAR = 0.3
+# Misses below this, m, are as good as none for a start: the refinement sees to them.
+_NEAR = 3e-3
 # Starts whose link ends are nearer than this, m, count as one, an axis 1 rad apart for _ARM_LENGTH.
 _DISTINCT = 0.03
 _ARM_LENGTH = 0.5
@@ -63,13 +67,18 @@ def starts(task: Task, rng: np.random.Generator) -> Iterator[Start]:
     if not len(population.length):
         return
     cost = _costs(task, estimated_misses(task, population)) + _category_cost(task, population)
-    population = population.take(np.argsort(cost, kind="stable")[:_SHORTLIST])
+    population = population.take(_promising(cost, population)[:_SHORTLIST])
     theta2, misses = limited_misses(task, population)
     cost = _costs(task, misses) + _category_cost(task, population)
-    promising = np.argsort(cost, kind="stable")[:_REFINED]
+    promising = _promising(cost, population)[:_REFINED]
     refined = refine(task, population.take(promising), theta2[:, promising].T)
     yield from itertools.islice(_distinct(task, refined), _BEFORE_SWAPS)
     yield from _distinct(task, refine(task, *_with_swapped_branches(task, refined, rng)))
+
+
+def _promising(cost: FloatArray, population: Population) -> NDArray[np.intp]:
+    """Return shapes in order: near misses by gentleness of the bend, then the others by their misses."""
+    return np.lexsort([population.bending, np.maximum(cost, _NEAR**2)])
 
 
 def _distinct(task: Task, refined: Refined) -> Iterator[Start]:

@@ -15,7 +15,7 @@ from synth.synthesis.population import ARCS
 from synth.synthesis.reach import why_impossible
 from synth.synthesis.screening import Start, starts
 from synth.synthesis.solution import Design, Solution, Status, Timing
-from synth.synthesis.verification import verify
+from synth.synthesis.verification import Violation, verify
 from synth.task import Objective
 
 if TYPE_CHECKING:
@@ -26,7 +26,11 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 _STARTS_AT_MOST = 48
+_STARTS_WHEN_IMPOSSIBLE = 12  # for a good best effort
 _STARTS_AFTER_FOUND = 6  # for distinct, gentler and nearer alternatives
+_ALTERNATIVES = 8
+# Shapes whose objective is above this multiple of the best one's are no alternatives to it.
+_COMPARABLE = 1.5
 # A found shape that uses less than this part of every tolerance leaves the rest to the hand.
 _AMPLE = 0.2
 # Two shapes nearer than this all along are one: a hand places the link to about 10 mm (facts of the
@@ -97,6 +101,8 @@ class _Search:
     def __post_init__(self) -> None:
         self._began = time.perf_counter()
         self._solving = self._verifying = self._screening = 0.0
+        self._impossible = why_impossible(self.task)
+        self._starts_at_most = _STARTS_WHEN_IMPOSSIBLE if self._impossible else _STARTS_AT_MOST
 
     def run(self) -> None:
         """Polish start points until enough is found, or the time is up."""
@@ -106,42 +112,46 @@ class _Search:
         for start in candidates:
             self._screening += time.perf_counter() - began
             if self._out_of_time():
+                if not self.designs:  # a start that was not polished is better than nothing
+                    self._keep(start.arm, start.joints)
                 break
             nlp = nlp or self._timed_nlp(0.0)
             self._polish(nlp, start)
             self.starts += 1
             self.starts_found += self._found()
             self._report()
-            if self.starts >= _STARTS_AT_MOST or self.starts_found > _STARTS_AFTER_FOUND:
+            if self.starts >= self._starts_at_most or self.starts_found > _STARTS_AFTER_FOUND:
                 break
             began = time.perf_counter()
 
     def solution(self) -> Solution:
         """Rank what was found and say what it is worth."""
-        designs = _distinct(sorted(self.designs, key=lambda design: _rank(self.task, design)))
+        designs = _best_of(self.task, self.designs)
         status, message = self._verdict(designs)
         total = time.perf_counter() - self._began
         timing = Timing(total, self._screening, self._solving, self._verifying)
         return Solution(self.task, status, message, self.seed, designs, self.starts, timing)
 
     def _verdict(self, designs: tuple[Design, ...]) -> tuple[Status, str]:
-        reasons = why_impossible(self.task)
+        details: list[str] = []
         if designs and designs[0].verification.found:
-            status, details = Status.FOUND, []
-        elif reasons:
-            status, details = Status.PROVEN_IMPOSSIBLE, list(reasons)
+            status = Status.FOUND
+        elif self._impossible:
+            status, details = Status.PROVEN_IMPOSSIBLE, list(self._impossible)
         elif self.interrupted:
-            status, details = Status.LIMIT, []
+            status = Status.LIMIT
         elif self.breakdowns and not (self.designs or self.blocked):
             status, details = Status.FAILED, self.breakdowns[:1]
         else:
-            status, details = Status.BEST_EFFORT, []
-        if not designs and not details:
-            details = ["there is no shape that the hardware can take"]
-            if self.blocked:
-                nearest = min(self.blocked, key=lambda d: len(d.verification.violations))
-                details += [violation.sentence for violation in nearest.verification.violations]
+            status = Status.BEST_EFFORT
+        if status in {Status.LIMIT, Status.BEST_EFFORT}:
+            details = _what_misses(self.task, designs[0]) if designs else self._what_blocks()
         return status, ": ".join(filter(None, [status.sentence, "; ".join(details)]))
+
+    def _what_blocks(self) -> list[str]:
+        """Return why there is no shape at all, as far as the nearest one tells."""
+        nearest = min((d.verification.violations for d in self.blocked), key=len, default=())
+        return ["no shape was found that the hardware can take", *(each.sentence for each in nearest)]
 
     def _polish(self, nlp: SynthesisNlp, start: Start) -> None:
         """Solve from one start; raise the floor a little where the link dips below it."""
@@ -150,19 +160,20 @@ class _Search:
             answer = self._timed_solve(nlp, arm, joints)
             if answer is None:
                 return
-            began = time.perf_counter()
-            design = Design(answer.arm, verify(self.task, answer.arm, answer.joints))
-            self._verifying += time.perf_counter() - began
-            if design.verification.possible:
-                self.designs.append(design)
-                return
-            self.blocked.append(design)
-            violations = design.verification.violations
+            arm, joints = answer.arm, answer.joints
+            violations = self._keep(arm, joints)
             if [violation.limit for violation in violations] != ["floor: link"]:
                 return
             margin += 1.5 * violations[0].amount
             nlp = self._timed_nlp(margin)
-            arm, joints = answer.arm, answer.joints
+
+    def _keep(self, arm: Arm, joints: FloatArray) -> tuple[Violation, ...]:
+        """Check a shape, keep it where it belongs, and return the limits it breaks."""
+        began = time.perf_counter()
+        design = Design(arm, verify(self.task, arm, joints))
+        self._verifying += time.perf_counter() - began
+        (self.designs if design.verification.possible else self.blocked).append(design)
+        return design.verification.violations
 
     def _timed_nlp(self, floor_margin: float) -> SynthesisNlp:
         began = time.perf_counter()
@@ -191,7 +202,15 @@ class _Search:
 
     def _report(self) -> None:
         worst = min((float(design.verification.misses.max()) for design in self.designs), default=math.inf)
-        self.progress(Progress(self.starts, _STARTS_AT_MOST, worst, self._found()))
+        self.progress(Progress(self.starts, self._starts_at_most, worst, self._found()))
+
+
+def _what_misses(task: Task, design: Design) -> list[str]:
+    """Return a sentence for each target that is not reached, the worst first, three at most."""
+    check = design.verification
+    order = [int(i) for i in np.argsort(-check.misses / task.tolerances) if not check.within_tolerance[i]]
+    sentences = [f"{task.targets[i].name} misses by {1e3 * check.misses[i]:.2f} mm" for i in order]
+    return sentences if len(order) <= 3 else [*sentences[:3], f"and {len(order) - 3} more"]
 
 
 def _rank(task: Task, design: Design) -> tuple[int, float]:
@@ -208,13 +227,25 @@ def _rank(task: Task, design: Design) -> tuple[int, float]:
     return 2, float(weighted.max() if task.objective is Objective.MINIMAX else weighted.sum())
 
 
-def _distinct(designs: list[Design]) -> tuple[Design, ...]:
-    """Return the designs that differ by more than a hand can tell, in the given order."""
+def _best_of(task: Task, designs: list[Design]) -> tuple[Design, ...]:
+    """Return the best designs in order, each different from those before by more than a hand can tell.
+
+    Beside a found design only found ones count, beside a best effort those that miss nearly as little.
+    """
     kept: list[Design] = []
-    for design in designs:
+    for design in sorted(designs, key=lambda design: _rank(task, design)):
+        if kept and not _comparable(_rank(task, design), _rank(task, kept[0])):
+            break
         if all(_difference(design, other) > _SAME_SHAPE for other in kept):
             kept.append(design)
-    return tuple(kept)
+    return tuple(kept[:_ALTERNATIVES])
+
+
+def _comparable(rank: tuple[int, float], best: tuple[int, float]) -> bool:
+    missing = 2
+    if best[0] < missing:
+        return rank[0] < missing
+    return rank[1] <= _COMPARABLE * best[1]
 
 
 def _difference(one: Design, other: Design) -> float:

@@ -1,0 +1,163 @@
+"""The command line: exit codes, what is printed where, and Ctrl-C."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from planted import out_of_reach, planted_task
+
+HEADER = "synth: 1\nlength_unit: m\nrobot: malleable-2dof\n"
+
+
+def run(*arguments, cwd=None):
+    return subprocess.run(
+        [sys.executable, "-m", "synth", *map(str, arguments)],
+        capture_output=True, text=True, check=False, cwd=cwd, timeout=120,
+    )  # fmt: skip
+
+
+def written(path, task, **keys):
+    targets = [
+        {"name": target.name, "position": target.position.tolist(), "tolerance": target.tolerance}
+        for target in task.targets
+    ]
+    extra = "".join(f"{key}: {value}\n" for key, value in keys.items())
+    path.write_text(f"{HEADER}{extra}targets: {json.dumps(targets)}\n")
+    return path
+
+
+@pytest.fixture
+def easy(tmp_path):
+    return written(tmp_path / "easy.yaml", planted_task(1, 3)[0])
+
+
+def test_help_needs_no_heavy_library():
+    program = (
+        "import sys; from synth.cli import main\n"
+        "try: main(['--help'], standalone_mode=False)\n"
+        "finally: print(sorted({m.split('.')[0] for m in sys.modules}))"
+    )
+    answer = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert "Exit codes" in answer.stdout
+    for library in ("numpy", "casadi", "scipy", "matplotlib", "pydantic", "rich", "ruamel"):
+        assert f"'{library}'" not in answer.stdout
+
+
+def test_a_found_task_exits_with_0_and_writes_its_files(easy, tmp_path):
+    answer = run("solve", easy, "-o", tmp_path / "out")
+    assert answer.returncode == 0
+    assert "every target is within its tolerance" in answer.stdout
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {
+        "solution.json", "guide.pdf", "markers.csv"
+    }  # fmt: skip
+    assert json.loads((tmp_path / "out" / "solution.json").read_text())["status"] == "found"
+
+
+def test_json_is_all_that_stands_on_stdout_and_stderr_is_silent_in_a_pipe(easy):
+    answer = run("solve", easy, "--json", "--seed", "3")
+    solution = json.loads(answer.stdout)
+    assert solution["schema"] == "synth.solution/1"
+    assert solution["seed"] == 3
+    assert answer.stderr == ""
+
+
+def test_the_same_task_and_seed_give_the_same_answer(easy):
+    first, second = (json.loads(run("solve", easy, "--json").stdout) for _ in range(2))
+    del first["time"], second["time"]
+    assert first == second
+
+
+def test_a_task_out_of_reach_exits_with_1_and_still_writes_its_best_effort(tmp_path):
+    answer = run("solve", written(tmp_path / "far.yaml", out_of_reach(2)), "-o", tmp_path / "out", "--json")
+    assert answer.returncode == 1
+    solution = json.loads(answer.stdout)
+    assert solution["status"] == "proven_impossible"
+    assert "reaches at most" in solution["message"]
+    assert all(np.isfinite(target["miss"]) for target in solution["targets"])
+    assert (tmp_path / "out" / "guide.pdf").exists()
+
+
+def test_wrong_input_exits_with_2_and_names_every_mistake(tmp_path):
+    task = tmp_path / "wrong.yaml"
+    task.write_text(HEADER + "topologie: any\ntargets:\n  - {position: [1, 2], tolerance: -1}\n")
+    answer = run("solve", task, "-o", tmp_path / "out")
+    assert answer.returncode == 2
+    assert answer.stdout == ""
+    for words in (
+        r"wrong\.yaml:4: topologie", "did you mean 'topology'",
+        r"wrong\.yaml:6: targets\[0\]\.position", r"targets\[0\]\.tolerance",
+    ):  # fmt: skip
+        assert re.search(words, answer.stderr), answer.stderr
+    assert "Traceback" not in answer.stderr
+    assert not (tmp_path / "out" / "solution.json").exists()
+
+
+@pytest.mark.parametrize(
+    "arguments", [["solve"], ["solve", "x.yaml", "--seed", "-1"], ["slove"], ["solve", "--time-limit"]]
+)
+def test_wrong_usage_exits_with_2(arguments):
+    answer = run(*arguments)
+    assert answer.returncode == 2
+    assert "Traceback" not in answer.stderr
+
+
+def test_an_output_directory_that_cannot_be_exits_with_2_before_the_search(easy, tmp_path):
+    (tmp_path / "file").write_text("")
+    answer = run("solve", easy, "-o", tmp_path / "file" / "out")
+    assert answer.returncode == 2
+    assert "Traceback" not in answer.stderr
+
+
+def test_a_time_limit_keeps_the_best_so_far(tmp_path):
+    task, _ = planted_task(5, 20)
+    noise = np.random.default_rng(0).normal(scale=0.03, size=(20, 3))
+    targets = [
+        {"position": (target.position + shift).tolist()}
+        for target, shift in zip(task.targets, noise, strict=True)
+    ]
+    file = tmp_path / "noisy.yaml"
+    file.write_text(f"{HEADER}floor: null\ntargets: {json.dumps(targets)}\n")
+    answer = run("solve", file, "--json", "--time-limit", "0.001")
+    solution = json.loads(answer.stdout)
+    assert answer.returncode == 1
+    assert solution["status"] == "limit"
+    unlimited = json.loads(run("solve", file, "--json").stdout)
+    assert unlimited["status"] == "best_effort"
+    assert unlimited["starts"] > solution["starts"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows sends no SIGINT to one process")
+def test_ctrl_c_keeps_the_best_so_far(tmp_path):
+    task, _ = planted_task(5, 200)
+    noise = np.random.default_rng(0).normal(scale=0.03, size=(200, 3))
+    targets = [
+        {"position": (target.position + shift).tolist()}
+        for target, shift in zip(task.targets, noise, strict=True)
+    ]
+    file = tmp_path / "noisy.yaml"
+    file.write_text(f"{HEADER}floor: null\ntargets: {json.dumps(targets)}\n")
+    with subprocess.Popen(
+        [sys.executable, "-m", "synth", "solve", str(file), "--json"],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    ) as process:  # fmt: skip
+        time.sleep(4.0)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+    assert "Traceback" not in err
+    assert "the best shape so far is kept" in err
+    solution = json.loads(out)
+    assert process.returncode == 1
+    assert solution["status"] == "limit"
+
+
+def test_the_module_and_the_command_are_the_same_program():
+    command = Path(sys.executable).with_name("synth")
+    answer = subprocess.run([command, "--version"], capture_output=True, text=True, check=True)
+    assert answer.stdout == run("--version").stdout
