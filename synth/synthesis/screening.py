@@ -7,7 +7,7 @@ finds it nearly always, and looking at a shape is ten thousand times cheaper tha
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.task import Task
 
+_MOST_TARGETS = 40
 _POPULATION = 200_000
 _SHORTLIST = 4000
 _REFINED = 400
@@ -61,6 +62,23 @@ def starts(task: Task, rng: np.random.Generator) -> Iterator[Start]:
     Yields:
         Start points; none where no random shape respects the limits and the floor.
     """
+    for start in _starts(_fewer_targets(task, rng), rng):
+        joints = start.joints
+        if len(joints) < len(task.targets):
+            joints, _ = start.arm.closest_joints([target.position for target in task.targets])
+        yield Start(start.arm, joints)
+
+
+def _fewer_targets(task: Task, rng: np.random.Generator) -> Task:
+    """Return the task with a random part of its targets: forty tell where to look as well as more."""
+    if len(task.targets) <= _MOST_TARGETS:
+        return task
+    chosen = np.sort(rng.choice(len(task.targets), _MOST_TARGETS, replace=False))
+    return replace(task, targets=tuple(task.targets[index] for index in chosen))
+
+
+def _starts(task: Task, rng: np.random.Generator) -> Iterator[Start]:
+    """Yield start points for a task of few targets."""
     population = Population.sample(task.robot, _POPULATION, rng)
     if task.floor is not None:
         population = population.take(population.end[1][:, 2] > task.floor)

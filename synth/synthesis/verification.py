@@ -15,7 +15,7 @@ from synth.arrays import FloatArray, frozen
 from synth.task import Topology
 
 if TYPE_CHECKING:
-    from synth.robot import Arm
+    from synth.robot import Arm, Interval
     from synth.task import Task
 
 # What rounding may do: a micrometre, a microradian.
@@ -99,7 +99,8 @@ def verify(task: Task, arm: Arm, joints: FloatArray | None = None) -> Verificati
         within_tolerance=tuple(bool(value) for value in within),
         gamma_residuals=frozen(arm.surface.residual(arm.base.to_base(reached))),
         violations=(
-            *_link_violations(arm),
+            *_length_violations(arm),
+            *_bend_violations(arm),
             *_joint_violations(arm, candidates[chosen]),
             *_floor_violations(task, arm, arm.base.to_base(reached)[:, 2]),
             *_topology_violations(task, arm),
@@ -114,19 +115,29 @@ def _exceeds(limit: str, value: float, bound: float, slack: float, sentence: str
     return [Violation(limit, value - bound, sentence)]
 
 
-def _link_violations(arm: Arm) -> list[Violation]:
+def _outside(interval: Interval, values: FloatArray | float) -> float:
+    """Return how far the worst of the values is outside the interval; negative for all inside."""
+    return float(np.max(np.maximum(interval.lower - values, values - interval.upper), initial=-math.inf))
+
+
+def _length_violations(arm: Arm) -> list[Violation]:
+    robot, violations = arm.robot, []
+    for name, interval, value in (
+        ("link", robot.link.length, arm.shape.length),
+        ("d35", robot.rigid_link.d35, arm.d35),
+        ("d45", robot.rigid_link.d45, arm.d45),
+    ):
+        violations += _exceeds(
+            f"length: {name}", _outside(interval, value), 0.0, _LENGTH_SLACK,
+            f"the length of {name} would have to be {1e3 * value:.2f} mm; "
+            f"its limits are {1e3 * interval.lower:.2f} and {1e3 * interval.upper:.2f} mm",
+        )  # fmt: skip
+    return violations
+
+
+def _bend_violations(arm: Arm) -> list[Violation]:
     link, shape = arm.robot.link, arm.shape
-    too_long = "the link would have to be {:.1f} mm long; {:.1f} mm is its limit"
-    length = shape.length
     return [
-        *_exceeds(
-            "length", length, link.length.upper, _LENGTH_SLACK,
-            too_long.format(1e3 * length, 1e3 * link.length.upper),
-        ),
-        *_exceeds(
-            "length", -length, -link.length.lower, _LENGTH_SLACK,
-            too_long.format(1e3 * length, 1e3 * link.length.lower),
-        ),
         *_exceeds(
             "min_bend_radius", link.min_bend_radius, shape.min_bend_radius, _LENGTH_SLACK,
             f"the link would need a bend radius of {1e3 * shape.min_bend_radius:.1f} mm; "
@@ -147,8 +158,7 @@ def _joint_violations(arm: Arm, joints: FloatArray) -> list[Violation]:
         ("base joint", limits.base, joints[:, 0]),
         ("second joint", limits.second, joints[:, 1]),
     ):
-        outside = np.maximum(interval.lower - angles, angles - interval.upper)
-        worst = float(np.max(outside, initial=-math.inf))
+        worst = _outside(interval, angles)
         violations += _exceeds(
             name, worst, 0.0, _ANGLE_SLACK,
             f"the {name} would have to turn {math.degrees(worst):.2f} deg beyond its limit",

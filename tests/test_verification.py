@@ -1,0 +1,127 @@
+"""The independent check must be able to say no: one planted fault at a time."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from planted import ROBOT, arm_of, planted_task
+
+from synth.errors import GeometryError
+from synth.robot import Interval, JointLimits, LinkShape, MalleableLink, RigidLink
+from synth.synthesis import verify
+from synth.task import Topology
+
+
+@pytest.fixture(scope="module")
+def planted():
+    return planted_task(21, 6)
+
+
+def limits_broken(task, arm):
+    return {violation.limit for violation in verify(task, arm).violations}
+
+
+def with_link(task, arm, **changes):
+    """Return task and arm with another link; the shape stays as it is."""
+    robot = replace(task.robot, link=replace(task.robot.link, **changes))
+    return replace(task, robot=robot), replace(arm, robot=robot)
+
+
+def test_what_was_planted_passes(planted):
+    task, arm = planted
+    check = verify(task, arm)
+    assert check.found
+    assert check.misses.max() < 1e-9
+    assert check.gamma_residuals.max() < 1e-12
+
+
+def test_a_target_moved_off_the_surface_is_missed_by_as_much(planted):
+    task, arm = planted
+    joints = arm.closest_joints(task.targets[2].position)[0]
+    by_theta1, by_theta2 = arm.kinematics.velocities(joints, arm.kinematics.forward(*joints))
+    normal = np.cross(by_theta1, by_theta2)
+    moved = task.targets[2].position + 2e-3 * normal / np.linalg.norm(normal)
+    targets = (*task.targets[:2], replace(task.targets[2], position=moved), *task.targets[3:])
+    check = verify(replace(task, targets=targets), arm)
+    assert check.possible
+    assert not check.found
+    assert check.within_tolerance == (True, True, False, True, True, True)
+    assert check.misses[2] == pytest.approx(2e-3, rel=1e-2)
+
+
+def test_a_link_too_long_or_too_short_breaks_its_length(planted):
+    task, arm = planted
+    length = arm.shape.length
+    for interval in (Interval(0.1, length - 2e-6), Interval(length + 2e-6, 2.0)):
+        assert limits_broken(*with_link(task, arm, length=interval)) == {"length: link"}
+    assert not limits_broken(*with_link(task, arm, length=Interval.fixed(length)))
+
+
+def test_a_bend_too_tight_or_too_far_breaks_its_limit(planted):
+    task, arm = planted
+    tight, far = arm.shape.min_bend_radius, arm.shape.total_bend
+    assert limits_broken(*with_link(task, arm, min_bend_radius=tight + 2e-6)) == {"min_bend_radius"}
+    assert limits_broken(*with_link(task, arm, max_total_bend=far - 2e-6)) == {"max_total_bend"}
+
+
+def test_a_rigid_link_beyond_its_interval_is_noticed(planted):
+    task, arm = planted
+    robot = replace(ROBOT, rigid_link=RigidLink(Interval(0.3, 0.4), Interval(0.3, 0.4)))
+    assert limits_broken(replace(task, robot=robot), replace(arm, robot=robot)) == {
+        "length: d35",
+        "length: d45",
+    }
+
+
+def test_joint_limits_bend_the_answer_and_are_never_exceeded(planted):
+    task, arm = planted
+    narrow = replace(ROBOT, joint_limits=JointLimits(Interval(1.0, 2.0), Interval(2.0, 3.0)))
+    check = verify(replace(task, robot=narrow), replace(arm, robot=narrow))
+    assert not check.found
+    assert narrow.joint_limits.contain(check.joints).all()
+    assert check.misses.max() > 0.1
+
+
+def test_the_floor_counts_for_link_joint_and_end_effector():
+    flat = LinkShape([[9.0, 0.0], [9.0, 0.0], [-2.0, 0.0], [0.0, 0.0]], [0.16] * 4)
+    arm = arm_of(flat)
+    assert ROBOT.d12 + flat.lowest() < 0.0
+    task, _ = planted_task(21, 6)
+    broken = limits_broken(task, arm)
+    assert {"floor: link", "floor: second joint"} <= broken
+    assert not limits_broken(replace(task, floor=None), arm)
+
+
+def test_a_target_below_the_floor_is_not_reached_there(planted):
+    _, arm = planted
+    low = arm.forward_kinematics(1.0, np.linspace(1.0, 5.3, 200))
+    low = low[np.argmin(low[:, 2])]
+    task, _ = planted_task(21, 1)
+    task = replace(task, targets=(replace(task.targets[0], position=low),), floor=float(low[2]) + 0.01)
+    assert not verify(task, arm).found
+    assert verify(replace(task, floor=float(low[2])), arm).within_tolerance == (True,)
+
+
+@pytest.mark.parametrize(
+    "topology", [Topology.SPHERICAL, Topology.PUMA, Topology.SCARA], ids=lambda t: t.value
+)
+def test_a_topology_is_exact_or_violated(topology):
+    task, arm = planted_task(22, 3, topology)
+    asked = replace(task, topology=topology)
+    assert not limits_broken(asked, arm)
+    shape = arm.shape
+    bent = replace(arm, shape=replace(shape, curvatures=shape.curvatures + 1e-4))
+    assert "topology" in limits_broken(asked, bent)
+    assert "topology" in limits_broken(replace(task, topology=Topology.GENERAL), arm)
+
+
+def test_a_shape_that_is_no_number_is_refused(planted):
+    task, arm = planted
+    nan = replace(arm, shape=replace(arm.shape, lengths=arm.shape.lengths * math.nan))
+    with np.errstate(invalid="ignore"), pytest.raises(GeometryError):
+        verify(task, nan)
+
+
+def test_the_link_of_the_preset_is_the_published_one():
+    assert ROBOT.link == MalleableLink(Interval(0.55, 0.7), 0.11, 0.05, 5.0)
