@@ -6,28 +6,33 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from synth import load_task, solve
+from synth import Solution, load_task, solve
 from synth.export import draw_sheet
 from synth.guide import make_guide
 
 ROOT = Path(__file__).parents[1]
-TASK = ROOT / "problems" / "four-crates" / "task.yaml"
+TASK = ROOT / "problems" / "four-targets" / "task.yaml"
 BLUE, ORANGE, GREY = "#0072b2", "#d55e00", "#555555"
 
 
-def workspace_picture(solution) -> Figure:
+def workspace_picture(solution: Solution) -> Figure:
     """Draw the arm, its workspace within the joint limits, and the targets."""
     arm, targets = solution.robot, solution.targets
-    figure = Figure(figsize=(7.5, 6.0))
+    figure = Figure(figsize=(7.5, 4.6))
     FigureCanvasAgg(figure)
-    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d", computed_zorder=False)
+    # Larger than the page, because the axes leave wide margins around what they show.
+    axes = figure.add_axes((-0.2, -0.65, 1.36, 2.21), projection="3d", computed_zorder=False)
     limits = arm.robot.joint_limits
     theta1 = np.linspace(limits.base.lower, limits.base.upper, 121)[:, None]
     theta2 = np.linspace(limits.second.lower, limits.second.upper, 61)
     surface = 1e3 * arm.forward_kinematics(theta1, theta2)
     # Cut open, so that the arm inside can be seen.
-    axes.plot_surface(*np.moveaxis(surface[20:], -1, 0), color=BLUE, alpha=0.13, linewidth=0, rcount=120, ccount=60)
-    axes.plot_wireframe(*np.moveaxis(surface[20:], -1, 0), color=BLUE, alpha=0.25, linewidth=0.4, rcount=25, ccount=12)
+    axes.plot_surface(
+        *np.moveaxis(surface[20:], -1, 0), color=BLUE, alpha=0.13, linewidth=0, rcount=120, ccount=60
+    )
+    axes.plot_wireframe(
+        *np.moveaxis(surface[20:], -1, 0), color=BLUE, alpha=0.25, linewidth=0.4, rcount=25, ccount=12
+    )
     turn = targets[0].joints[0]
     cos, sin = np.cos(turn), np.sin(turn)
     turned = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
@@ -51,7 +56,7 @@ def main() -> None:
     """Solve the task of the README and draw it."""
     solution = solve(load_task(TASK))
     figure = workspace_picture(solution)
-    figure.savefig(ROOT / "docs" / "workspace.png", dpi=110, bbox_inches="tight", pad_inches=0.0)
+    figure.savefig(ROOT / "docs" / "workspace.png", dpi=110)
     sheet = draw_sheet(solution, make_guide(solution.task, solution.best), "png")
     (ROOT / "docs" / "guide.png").write_bytes(sheet)
 
