@@ -11,7 +11,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from planted import out_of_reach, planted_task
+from test_task_reading import WRONG
+
+from synth.cli import main
 
 HEADER = "synth: 1\nlength_unit: m\nrobot: malleable-2dof\n"
 
@@ -97,6 +101,19 @@ def test_wrong_input_exits_with_2_and_names_every_mistake(tmp_path):
         assert re.search(words, answer.stderr), answer.stderr
     assert "Traceback" not in answer.stderr
     assert not (tmp_path / "out" / "solution.json").exists()
+
+
+@pytest.mark.parametrize(("content", "key", "line", "words"), WRONG.values(), ids=WRONG)
+def test_each_kind_of_malformed_file_exits_with_2_and_names_its_key(tmp_path, content, key, line, words):
+    task = tmp_path / "task.yaml"
+    task.write_bytes(content if isinstance(content, bytes) else content.encode())
+    answer = CliRunner().invoke(main, ["solve", str(task), "--json"])
+    assert isinstance(answer.exception, SystemExit), answer.exception
+    assert answer.exit_code == 2
+    assert answer.stdout == ""
+    place = f"{task}:{line}" if line else str(task)
+    assert f"{place}: {key}: " in answer.stderr if key else f"{place}: " in answer.stderr
+    assert all(word in answer.stderr for word in words.split())
 
 
 @pytest.mark.parametrize(
