@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.guide.guide import make_guide
+from synth.synthesis import Status
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from synth.synthesis.solution import Design, Solution, TargetResult
 
 _MOST_TARGETS = 10
+_STRAIGHT = 100.0  # m, a bend radius that no eye and no hand can tell from none
 
 
 def summary_text(solution: Solution) -> str:
@@ -34,6 +36,8 @@ def summary_text(solution: Solution) -> str:
     bullets = [reason for reason in reasons.split("; ") if reason]
     if solution.designs:
         arm = solution.robot
+        if solution.status in {Status.BEST_EFFORT, Status.LIMIT}:
+            bullets = []  # they say which targets are missed, as the lines of the targets do
         bullets += [
             *_target_lines(solution.targets),
             arm.category_distances.describe(),
@@ -104,7 +108,7 @@ def axis_sentence(guide: Guide) -> str:
 def link_sentence(shape: LinkShape) -> str:
     """Return the numbers of a link's shape, without a full stop."""
     radius = "straight"
-    if math.isfinite(shape.min_bend_radius):
+    if shape.min_bend_radius < _STRAIGHT:
         radius = f"smallest bend radius {1e3 * shape.min_bend_radius:.1f} mm"
     bend = math.degrees(shape.total_bend)
     return f"link {1e3 * shape.length:.1f} mm long, {radius}, {bend:.1f} deg of bend in all"

@@ -13,7 +13,7 @@ Unknowns, in metres and radians but for the curvatures, which are in units of th
     curvature   (kx, ky) of each of the equal arcs             2 m
     length      of the link                                    1
     s           s13, s14, s23, s24                             4
-    rigid       s35, s45, where the rigid link is free         0 or 2
+    rigid       s35, s45, and the circle of P5, where free     0 or 4
     joints      theta1, theta2 of each target                  2 n
     miss        vector from each target to P5                  3 n
     worst       largest weighted (miss / tolerance)^2          1, for the minimax objective
@@ -51,8 +51,8 @@ _STRAIGHT = 1e-10
 # Heights of the link are bounded at this many points of each arc; what dips below the floor between
 # them is seen by the verification and answered by a higher margin.
 _HEIGHTS_PER_ARC = 4
-# An end effector circle smaller than this (squared, m^2) has no second joint worth its name.
-_LEAST_CIRCLE = 1e-6
+# With a smaller circle of the end effector, m, the second joint is not worth its name.
+_LEAST_RADIUS = 1e-3
 # `topology: general` keeps this far from the special categories: twice what still counts as one.
 _GENERAL_DISTANCE = 2e-3
 _GENERAL_ANGLE = math.radians(0.2)
@@ -253,13 +253,16 @@ class SynthesisNlp:
         """Return offset along axis 2 and radius of P5's circle; free rigid links get s35 and s45."""
         robot, rigid = self._task.robot, self._task.robot.rigid_link
         if rigid.is_fixed:
-            offset, radius = robot.end_effector_circle(rigid.d35.lower, rigid.d45.lower)
-            return ca.SX(offset), ca.SX(radius)
+            fixed_offset, fixed_radius = robot.end_effector_circle(rigid.d35.lower, rigid.d45.lower)
+            return ca.SX(fixed_offset), ca.SX(fixed_radius)
         s35 = self._x.unknown("s35", (1, 1), rigid.d35.lower**2, rigid.d35.upper**2)
         s45 = self._x.unknown("s45", (1, 1), rigid.d45.lower**2, rigid.d45.upper**2)
-        from_p3 = (s35 - s45 + robot.d34**2) / (2.0 * robot.d34)
-        squared_radius = self._g.add(s35 - from_p3**2, _LEAST_CIRCLE, math.inf)
-        return from_p3 - robot.tip_offset, ca.sqrt(squared_radius)
+        # The circle is unknown, too, so that no step of the solver meets the root of a negative number.
+        from_p3 = self._x.unknown("from_p3", (1, 1), -math.inf, math.inf)
+        radius = self._x.unknown("radius", (1, 1), _LEAST_RADIUS, math.inf)
+        self._equal(s35 - from_p3**2 - radius**2)
+        self._equal(s45 - (from_p3 - robot.d34) ** 2 - radius**2)
+        return from_p3 - robot.tip_offset, radius
 
     def _ask_for_topology(self, position: ca.SX, u: ca.SX, v: ca.SX, t: ca.SX) -> None:
         """Constrain the axes: two regular equations for each special category."""
@@ -292,7 +295,7 @@ class SynthesisNlp:
             (arm.shape.curvatures * radius).ravel(),
             [arm.shape.length],
             squared[[0, 0, 1, 1], [2, 3, 2, 3]],
-            [] if task.robot.rigid_link.is_fixed else [arm.d35**2, arm.d45**2],
+            [] if task.robot.rigid_link.is_fixed else self._rigid_link(arm),
             joints.T.ravel(),
             misses.T.ravel(),
         ]
@@ -300,6 +303,11 @@ class SynthesisNlp:
             worst = np.max(task.weights * (np.linalg.norm(misses, axis=1) / task.tolerances) ** 2)
             parts.append([worst])
         return np.concatenate([np.asarray(part, dtype=np.float64) for part in parts])
+
+    def _rigid_link(self, arm: Arm) -> list[float]:
+        """Return the unknowns of a free rigid link: s35, s45, and the circle of P5."""
+        offset, radius = arm.robot.end_effector_circle(arm.d35, arm.d45)
+        return [arm.d35**2, arm.d45**2, float(offset) + arm.robot.tip_offset, float(radius)]
 
     def _unpack(self, values: FloatArray) -> tuple[Arm, FloatArray]:
         """Return the shape that the unknowns describe, rounded into the bounds of the hardware."""
@@ -315,7 +323,7 @@ class SynthesisNlp:
         if not rigid.is_fixed:
             d35 = float(np.clip(math.sqrt(rest[0]), rigid.d35.lower, rigid.d35.upper))
             d45 = float(np.clip(math.sqrt(rest[1]), rigid.d45.lower, rigid.d45.upper))
-            rest = rest[2:]
+            rest = rest[4:]
         limits = robot.joint_limits
         joints = rest[: 2 * len(task.targets)].reshape(2, -1).T
         joints = np.clip(

@@ -19,7 +19,7 @@ class Status(Enum):
     """How a synthesis ended; `sentence` is for the user."""
 
     FOUND = "found", "every target is within its tolerance"
-    BEST_EFFORT = "best_effort", "no shape found reaches every target; this one comes closest"
+    BEST_EFFORT = "best_effort", "no shape was found that reaches every target; this is the nearest found"
     PROVEN_IMPOSSIBLE = "proven_impossible", "no shape of this robot can do the task"
     LIMIT = "limit", "stopped before the search was complete; this is the best shape so far"
     FAILED = "failed", "the solver broke down"
