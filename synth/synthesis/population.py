@@ -117,7 +117,7 @@ def into_limits(robot: Robot, unknowns: FloatArray) -> FloatArray:
     bends = np.linalg.norm(curvatures, axis=-1)
     shrink = 1.0 / np.maximum(bends, 1.0)
     total = np.sum(bends * shrink, axis=-1) * unknowns[..., 2 * ARCS] * link.max_curvature / ARCS
-    shrink = shrink / np.maximum(total / link.max_total_bend, 1.0)[..., None]
+    shrink = shrink / np.maximum(total / max(link.max_total_bend, 1e-12), 1.0)[..., None]
     unknowns[..., : 2 * ARCS] = (curvatures * shrink[..., None]).reshape(*unknowns.shape[:-1], 2 * ARCS)
     if not rigid.is_fixed:
         # P3, P4, P5 must make a triangle: |d35 - d34| <= d45 <= d35 + d34.

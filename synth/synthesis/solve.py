@@ -144,14 +144,15 @@ class _Search:
             status, details = Status.FAILED, self.breakdowns[:1]
         else:
             status = Status.BEST_EFFORT
+        sentence = status.sentence
         if status in {Status.LIMIT, Status.BEST_EFFORT}:
-            details = _what_misses(self.task, designs[0]) if designs else self._what_blocks()
-        return status, ": ".join(filter(None, [status.sentence, "; ".join(details)]))
-
-    def _what_blocks(self) -> list[str]:
-        """Return why there is no shape at all, as far as the nearest one tells."""
-        nearest = min((d.verification.violations for d in self.blocked), key=len, default=())
-        return ["no shape was found that the hardware can take", *(each.sentence for each in nearest)]
+            if designs:
+                details = _what_misses(self.task, designs[0])
+            else:  # as far as the shape tells that breaks the fewest limits
+                sentence = "no shape was found that the hardware can take"
+                nearest = min((d.verification.violations for d in self.blocked), key=len, default=())
+                details = [violation.sentence for violation in nearest]
+        return status, ": ".join(filter(None, [sentence, "; ".join(details)]))
 
     def _polish(self, nlp: SynthesisNlp, start: Start) -> None:
         """Solve from one start; raise the floor a little where the link dips below it."""
