@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from synth.errors import GeometryError, InputError, Mistake, SolverError, SynthError
     from synth.export import solution_to_json, write_files
     from synth.guide import Guide, make_guide
-    from synth.robot import PRESETS, Arm, BasePose, LinkShape, Robot
+    from synth.robot import PRESETS, Arm, BasePose, LinkShape, Robot, Workspace
     from synth.synthesis import NotFoundError, Solution, Status, solve, verify
     from synth.task import Objective, PointTarget, Task, Topology, load_robot, load_task, parse_task
 
@@ -28,7 +28,7 @@ _ROOMS = {
     "errors": ("GeometryError", "InputError", "Mistake", "SolverError", "SynthError"),
     "export": ("solution_to_json", "write_files"),
     "guide": ("Guide", "make_guide"),
-    "robot": ("PRESETS", "Arm", "BasePose", "LinkShape", "Robot"),
+    "robot": ("PRESETS", "Arm", "BasePose", "LinkShape", "Robot", "Workspace"),
     "synthesis": ("NotFoundError", "Solution", "Status", "solve", "verify"),
     "task": ("Objective", "PointTarget", "Task", "Topology", "load_robot", "load_task", "parse_task"),
 }
@@ -53,6 +53,7 @@ __all__ = [
     "SynthError",
     "Task",
     "Topology",
+    "Workspace",
     "__version__",
     "load_robot",
     "load_task",

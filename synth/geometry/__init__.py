@@ -26,6 +26,7 @@ from synth.geometry.distances import (
 )
 from synth.geometry.gamma import WorkspaceSurface, distance_polynomials, gamma_determinant
 from synth.geometry.invariants import Invariants
+from synth.geometry.trigonometric import critical_angles, sampling_angles
 
 __all__ = [
     "ArmDistances",
@@ -37,8 +38,10 @@ __all__ = [
     "cayley_menger",
     "cayley_menger_bideterminant",
     "classify",
+    "critical_angles",
     "distance_polynomials",
     "gamma_determinant",
     "realise",
+    "sampling_angles",
     "squared_distances",
 ]

@@ -9,19 +9,12 @@ import numpy as np
 
 from synth.arrays import FloatArray, frozen
 from synth.errors import GeometryError
+from synth.geometry.closest import closest_angles
 from synth.geometry.distances import ArmDistances, realise, squared_distances
 from synth.geometry.gamma import WorkspaceSurface
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-
-# Nine samples would do for a trigonometric polynomial of degree 4; a power of two is as cheap.
-_AROUND = 2.0 * np.pi / 16.0 * np.arange(16)
-_DEGREE = 4
-# Half-widths of the first search, rad: a fourfold root, at the rim of a sphere or plane, is known to
-# 3e-3, and between neighbours of _AROUND lies all that the roots may have missed.
-_WIDTHS = np.repeat([0.02, np.pi / 16.0], [2 * _DEGREE, 16])
-_ZOOM = np.linspace(-1.0, 1.0, 17)
 
 
 @dataclass(frozen=True)
@@ -157,15 +150,13 @@ class SweptCircle:
         across = np.cos(angles) * start + np.sin(angles) * np.cross(self.axis, start)
         return np.asarray(self.centre + self.radius * across)
 
-    def distance(self, points: ArrayLike) -> FloatArray:
-        """Return the distance from points to the swept surface, joint limits aside.
+    def closest_point(self, points: ArrayLike) -> FloatArray:
+        """Return the point of the swept surface that is closest to each point, joint limits aside.
 
-        Joint 1 turns any point into the half-plane (rho, z), where the surface is one closed curve. With
-        A = N(t) / 2 - z z(t) and B = rho(t)^2 along the circle, the squared distance is a constant plus
-        2 A - 2 rho sqrt(B), and stationary only where 4 A'^2 B = (rho B')^2: at roots of a trigonometric
-        polynomial of degree 4, so at no more than eight angles t. The nearest of these is taken.
-        A coarse search beside them is for points where the polynomial vanishes, such as the centre of a
-        circle that lies in a plane with axis 1.
+        Joint 1 turns any point into the half-plane (rho, z), where the surface is one closed curve and all
+        minima of the distance are found: see `closest_angles`. It lies in the half-plane of its point. A
+        point of axis 1 is as near to a whole circle, of which the point in the half-plane x > 0, y = 0 is
+        returned; of other points that are equally close, any.
 
         No Gamma is needed, and so this holds in every category, also beyond the rims where the sphere or
         the plane ends but Gamma goes on, and for coincident axes, where Gamma vanishes everywhere.
@@ -174,44 +165,54 @@ class SweptCircle:
             points: Shape (..., 3), m.
 
         Returns:
+            Shape (..., 3), m.
+        """
+        p = np.asarray(points, dtype=np.float64)
+        rho, z = np.hypot(p[..., 0], p[..., 1]), p[..., 2]
+        nearest = self.points(closest_angles(self, rho.ravel(), z.ravel())).reshape(p.shape)
+        off_axis = np.where(rho > 0.0, rho, 1.0)
+        outwards = np.where(rho[..., None] > 0.0, p[..., :2] / off_axis[..., None], [1.0, 0.0])
+        radial = np.hypot(nearest[..., 0], nearest[..., 1])
+        return np.concatenate([radial[..., None] * outwards, nearest[..., 2:]], axis=-1)
+
+    def distance(self, points: ArrayLike) -> FloatArray:
+        """Return the distance |p - closest_point(p)| from points to the swept surface, joint limits aside.
+
+        Args:
+            points: Shape (..., 3), m.
+
+        Returns:
             Shape (...), m.
         """
-        x, y, z = np.moveaxis(np.asarray(points, dtype=np.float64), -1, 0)
-        rho, z = np.hypot(x, y)[..., None], z[..., None]
-        roots = self._stationary_angles(rho, z)
-        around = np.broadcast_to(_AROUND, (*roots.shape[:-1], len(_AROUND)))
-        angles, widths = np.concatenate([roots, around], axis=-1), _WIDTHS
-        while widths[-1] > np.finfo(np.float64).eps:
-            nearby = angles[..., None] + widths[:, None] * _ZOOM
-            misses = self._misses(rho[..., None], z[..., None], nearby)
-            best = np.argmin(misses, axis=-1, keepdims=True)
-            angles = np.take_along_axis(nearby, best, axis=-1)[..., 0]
-            widths = widths * (_ZOOM[1] - _ZOOM[0])
-        return np.asarray(np.min(misses, axis=(-2, -1)))
+        p = np.asarray(points, dtype=np.float64)
+        return np.asarray(np.linalg.norm(p - self.closest_point(p), axis=-1))
 
-    def _stationary_angles(self, rho: FloatArray, z: FloatArray) -> FloatArray:
-        """Return the angles, shape (..., 8), at which the distance from (rho, z) may be stationary."""
-        p = self.points(_AROUND)
-        dp = self.points(_AROUND + 0.5 * np.pi) - self.centre
-        inner = np.sum(p * dp, axis=-1)
-        da = inner - z * dp[:, 2]
-        b, db = np.sum(p[:, :2] ** 2, axis=-1), 2.0 * (inner - p[:, 2] * dp[:, 2])
-        spectrum = np.fft.fft(4.0 * da**2 * b - (rho * db) ** 2)
-        # In w = exp(i t), times w^4: coefficients of w^0 ... w^8, and the roots as eigenvalues.
-        polynomial = np.roll(spectrum, _DEGREE, axis=-1)[..., : 2 * _DEGREE + 1]
-        # A leading coefficient of zero would send roots to infinity: far away is enough, and milder.
-        leading = polynomial[..., -1:]
-        floor = 1e-10 * np.max(np.abs(polynomial), axis=-1, keepdims=True) + np.finfo(np.float64).tiny
-        leading = np.where(np.abs(leading) < floor, floor, leading)
-        companion = np.zeros((*rho.shape[:-1], 2 * _DEGREE, 2 * _DEGREE), dtype=np.complex128)
-        companion[..., 1:, :-1] = np.eye(2 * _DEGREE - 1)
-        companion[..., -1] = -polynomial[..., :-1] / leading
-        return np.asarray(np.angle(np.linalg.eigvals(companion)))
+    def signed_distance(self, points: ArrayLike) -> FloatArray:
+        """Return the distance to the swept surface, negative inside: where Gamma > 0.
 
-    def _misses(self, rho: FloatArray, z: FloatArray, angles: ArrayLike) -> FloatArray:
-        """Return the distances in the half-plane from (rho, z) to the points at these angles."""
-        x, y, height = np.moveaxis(self.points(angles), -1, 0)
-        return np.asarray(np.hypot(np.hypot(x, y) - rho, height - z))
+        Skew axes sweep a closed tube, and in the coordinates (N, z) its section is an ellipse: inside is
+        |w| < 2 R |moment|, with w as in `surface`. If the circle passes through axis 1 (a spindle torus),
+        what it encloses about the axis is outside, as for Gamma. As the axes come to meet or to be
+        parallel the tube flattens to a sheet with no inside: every point is then outside.
+
+        Args:
+            points: Shape (..., 3), m.
+
+        Returns:
+            Shape (...), m.
+        """
+        p = np.asarray(points, dtype=np.float64)
+        inside = np.linalg.norm(self._across(p), axis=-1) < 2.0 * self.radius * abs(self.moment)
+        return np.where(inside, -1.0, 1.0) * self.distance(p)
+
+    def _across(self, points: FloatArray) -> FloatArray:
+        """Return w = N' z_|_ - 2 z' c_|_ of `surface` at points, shape (..., 3), m^2."""
+        n = np.sum(points**2, axis=-1) - np.dot(self.centre, self.centre) - self.radius**2
+        z_part = _part_across(self.axis, np.array([0.0, 0.0, 1.0]))
+        height = points[..., 2] - self.centre[2]
+        return np.asarray(
+            n[..., None] * z_part - 2.0 * height[..., None] * _part_across(self.axis, self.centre)
+        )
 
 
 def _part_across(axis: FloatArray, vector: FloatArray) -> FloatArray:

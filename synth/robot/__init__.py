@@ -1,4 +1,4 @@
-"""The robot: hardware, malleable link, forward and inverse kinematics."""
+"""The robot: hardware, malleable link, forward and inverse kinematics, workspace."""
 
 from synth.robot.arm import Arm, JointBranches
 from synth.robot.base import BasePose
@@ -6,6 +6,7 @@ from synth.robot.hardware import Interval, JointLimits, MalleableLink, RigidLink
 from synth.robot.kinematics import Kinematics, into_turn
 from synth.robot.link import LinkShape, arc_motion, chain_end
 from synth.robot.presets import PRESETS
+from synth.robot.workspace import SurfaceMesh, Workspace
 
 __all__ = [
     "PRESETS",
@@ -19,6 +20,8 @@ __all__ = [
     "MalleableLink",
     "RigidLink",
     "Robot",
+    "SurfaceMesh",
+    "Workspace",
     "arc_motion",
     "chain_end",
     "into_turn",

@@ -161,8 +161,9 @@ class Kinematics:
             left, right = upper - span, lower + span
             left_is_better = one.miss(left, point, limits.base) < one.miss(right, point, limits.base)
             lower, upper = np.where(left_is_better, lower, left), np.where(left_is_better, right, upper)
-        # The bracket's middle, or one of its ends where that is an end of the joint range.
-        theta2 = np.concatenate([lower, 0.5 * (lower + upper), upper], axis=-1)
+        # The golden section comes near an end of the joint range, but never to it.
+        ends = np.broadcast_to([second.lower, second.upper], (*lower.shape[:-1], 2))
+        theta2 = np.concatenate([0.5 * (lower + upper), ends], axis=-1)
         joints = np.stack([one.best_theta1(theta2, point, limits.base), theta2], axis=-1)
         # Newton's method has the last word wherever it stays within the limits.
         polished = one.polished(joints, point)
