@@ -25,9 +25,10 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 _MOST_TARGETS = 40
-_POPULATION = 200_000
-_SHORTLIST = 4000
-_REFINED = 400
+# How many shapes are drawn, looked at with the joint limits, and refined: most tasks are found in the
+# first step, which takes a tenth of the second one's time.
+_STEPS = ((20_000, 1_000, 200), (200_000, 4_000, 400))
+_STARTS_PER_STEP = 12
 # Misses are only compared up to here, m: beyond, a shape is far off and by how much says little.
 _FAR = 0.3
 # Misses below this, m, are as good as none for a start: the refinement sees to them.
@@ -37,9 +38,8 @@ _DISTINCT = 0.03
 _ARM_LENGTH = 0.5
 # Mean squared misses below this, m^2, are all as good: then the gentler bend goes first.
 _SETTLED = 1e-8
-# After so many starts have not found it, the best shapes are tried again with branches swapped.
-_BEFORE_SWAPS = 12
-_SWAPPED = 8
+# In the end the best shapes are tried again with branches swapped.
+_SWAPPED, _SWAPS = 8, 50
 _SWAP_CHANCES = (0.1, 0.25, 0.5, 1.0)
 _SHEET = 0.04  # a branch that misses by more than this, m, is no other sheet of the same surface
 
@@ -78,20 +78,36 @@ def _fewer_targets(task: Task, rng: np.random.Generator) -> Task:
 
 
 def _starts(task: Task, rng: np.random.Generator) -> Iterator[Start]:
-    """Yield start points for a task of few targets."""
-    population = Population.sample(task.robot, _POPULATION, rng)
+    """Yield start points for a task of few targets, each step with more effort than the one before."""
+    refined = None
+    for size, shortlist, count in _STEPS:
+        if (refined := _screened(task, rng, size, shortlist, count)) is not None:
+            yield from itertools.islice(_distinct(task, refined), _STARTS_PER_STEP)
+    if refined is not None:
+        yield from _distinct(task, refine(task, *_with_swapped_branches(task, refined, rng)))
+
+
+def _screened(task: Task, rng: np.random.Generator, size: int, shortlist: int, count: int) -> Refined | None:
+    """Return the most promising of random shapes, refined; None if the floor leaves none.
+
+    Args:
+        task: The task.
+        rng: Source of randomness.
+        size: How many shapes to draw.
+        shortlist: How many of them to look at with the joint limits.
+        count: How many of these to refine.
+    """
+    population = Population.sample(task.robot, size, rng)
     if task.floor is not None:
         population = population.take(population.end[1][:, 2] > task.floor)
     if not len(population.length):
-        return
+        return None
     cost = _costs(task, estimated_misses(task, population)) + _category_cost(task, population)
-    population = population.take(_promising(cost, population)[:_SHORTLIST])
+    population = population.take(_promising(cost, population)[:shortlist])
     theta2, misses = limited_misses(task, population)
     cost = _costs(task, misses) + _category_cost(task, population)
-    promising = _promising(cost, population)[:_REFINED]
-    refined = refine(task, population.take(promising), theta2[:, promising].T)
-    yield from itertools.islice(_distinct(task, refined), _BEFORE_SWAPS)
-    yield from _distinct(task, refine(task, *_with_swapped_branches(task, refined, rng)))
+    promising = _promising(cost, population)[:count]
+    return refine(task, population.take(promising), theta2[:, promising].T)
 
 
 def _promising(cost: FloatArray, population: Population) -> NDArray[np.intp]:
@@ -135,7 +151,7 @@ def _with_swapped_branches(
     swapped = np.take_along_axis(both, other[..., None], axis=-1)[..., 0]
     swapped = np.clip(swapped, limits.second.lower, limits.second.upper)
     near = kinematics.miss(swapped, task.positions, limits.base) < _SHEET
-    copies = np.repeat(np.arange(len(best)), _REFINED // len(best))
+    copies = np.repeat(np.arange(len(best)), _SWAPS)
     chance = rng.choice(_SWAP_CHANCES, len(copies))
     swap = near[copies] & (rng.uniform(size=(len(copies), len(task.targets))) < chance[:, None])
     return population.take(copies), np.where(swap, swapped[copies], theta2[copies])
