@@ -1,8 +1,7 @@
-"""The commands of `synth`."""
+"""The commands of `synth` and their options; what they do is in the modules of their names."""
 
 from __future__ import annotations
 
-import json
 import math
 import sys
 from pathlib import Path
@@ -10,8 +9,6 @@ from pathlib import Path
 import click
 
 from synth.version import __version__
-
-FOUND, NOT_FOUND, WRONG_INPUT, BROKEN = 0, 1, 2, 3
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -51,35 +48,38 @@ def solve(
 
     Ctrl-C stops the search and gives the best shape so far.
     """
-    from synth.cli.session import interruptible, search_progress
-    from synth.errors import InputError, SynthError
-    from synth.export import prepare_directory, solution_to_json, write_files
-    from synth.guide import solution_text
-    from synth.synthesis import Status
-    from synth.synthesis import solve as solve_task
-    from synth.task import load_task
+    from synth.cli.solve import solve_file
 
-    try:
-        task = load_task(task_file)
-        if output is not None:
-            prepare_directory(output)
-    except (InputError, SynthError) as error:
-        click.echo(str(error), err=True)
-        sys.exit(WRONG_INPUT)
-    with interruptible() as stop, search_progress() as progress:
-        solution = solve_task(task, seed=seed, time_limit=time_limit, stop=stop, progress=progress)
-    if as_json:
-        click.echo(json.dumps(solution_to_json(solution), indent=2, allow_nan=False))
-    else:
-        click.echo(solution_text(solution, alternatives=show_all))
-    if output is not None:
-        try:
-            files = write_files(solution, output)
-        except SynthError as error:
-            click.echo(str(error), err=True)
-            sys.exit(WRONG_INPUT)
-        for file in files:
-            click.echo(f"wrote {file}", err=True)
-    if solution.status is Status.FAILED:
-        sys.exit(BROKEN)
-    sys.exit(FOUND if solution.found else NOT_FOUND)
+    form = "json" if as_json else "text"
+    sys.exit(solve_file(task_file, output, form=form, show_all=show_all, seed=seed, time_limit=time_limit))
+
+
+@main.command()
+@click.argument("config_file", metavar="CONFIG.yaml", type=click.Path(path_type=Path))
+@click.option(
+    "-o", "--output", metavar="DIR", type=click.Path(path_type=Path),
+    help="Write inspect.json and a picture of each workspace into this directory.",
+)  # fmt: skip
+@click.option("--json", "form", flag_value="json", help="Print JSON and nothing else.")
+@click.option("--markdown", "form", flag_value="markdown", help="Print a table in Markdown.")
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the samples.")
+@click.option(
+    "--samples", type=click.IntRange(1, 100_000), default=4000, show_default=True,
+    help="How many shapes to draw for the ranges.",
+)  # fmt: skip
+def inspect(config_file: Path, output: Path | None, form: str | None, seed: int, samples: int) -> None:
+    """Look at a shape that was measured, as distances or markers in CONFIG.yaml.
+
+    Says whether points in space have these distances, what they leave open, and whether the link can
+    take the pose.
+
+    \b
+    Exit codes:
+      0  realisable: points in space have all distances within their bounds
+      1  not realisable, or a number is impossible
+      2  wrong input: every mistake is named
+      3  the solver broke down
+    """
+    from synth.cli.inspect import inspect_file
+
+    sys.exit(inspect_file(config_file, output, form=form or "text", seed=seed, samples=samples))

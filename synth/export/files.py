@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import tempfile
@@ -34,18 +35,50 @@ def write_files(solution: Solution, directory: str | os.PathLike[str]) -> list[P
         SynthError: They cannot be written. Files of an earlier run are then as they were.
     """
     guide = make_guide(solution.task, solution.designs[0]) if solution.designs else None
-    content = json.dumps(solution_to_json(solution), indent=1, allow_nan=False, ensure_ascii=False)
-    files = {
-        "solution.json": (content + "\n").encode(),
-        "guide.pdf": draw_sheet(solution, guide),
-        "markers.csv": markers_csv(guide).encode(),
-    }
+    return write_all(
+        {
+            "solution.json": json_bytes(solution_to_json(solution)),
+            "guide.pdf": draw_sheet(solution, guide),
+            "markers.csv": markers_csv(guide).encode(),
+        },
+        directory,
+    )
+
+
+def write_all(files: Mapping[str, bytes], directory: str | os.PathLike[str]) -> list[Path]:
+    """Write files into a directory, whole or not at all; a reader never meets half of one.
+
+    Args:
+        files: Contents by name.
+        directory: Where to; it is made if it is not there.
+
+    Returns:
+        The paths of the files, in the order given.
+
+    Raises:
+        SynthError: They cannot be written.
+    """
     directory = Path(directory)
+    # All are written beside their places, then moved there; the process id keeps two runs apart.
+    beside = {directory / name: directory / f".{name}.{os.getpid()}.part" for name in files}
     try:
         directory.mkdir(parents=True, exist_ok=True)
-        return _replace({directory / name: content for name, content in files.items()})
+        for path, temporary in beside.items():
+            temporary.write_bytes(files[path.name])
+        for path, temporary in beside.items():
+            temporary.replace(path)
     except OSError as error:
         raise _cannot_write(directory, error) from error
+    finally:
+        for temporary in beside.values():
+            with contextlib.suppress(OSError):
+                temporary.unlink()
+    return list(beside)
+
+
+def json_bytes(content: Mapping[str, object]) -> bytes:
+    """Return plain data as the bytes of a JSON file."""
+    return (json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False) + "\n").encode()
 
 
 def prepare_directory(directory: str | os.PathLike[str]) -> None:
@@ -67,18 +100,3 @@ def prepare_directory(directory: str | os.PathLike[str]) -> None:
 
 def _cannot_write(directory: Path, error: OSError) -> SynthError:
     return SynthError(f"cannot write to {directory}: {error.strerror or error}")
-
-
-def _replace(files: Mapping[Path, bytes]) -> list[Path]:
-    """Write all files beside their places, then move them there: a reader never meets half of one."""
-    # The process id keeps two runs apart that write to one directory.
-    beside = {path: path.with_name(f".{path.name}.{os.getpid()}.part") for path in files}
-    try:
-        for path, content in files.items():
-            beside[path].write_bytes(content)
-        for path, temporary in beside.items():
-            temporary.replace(path)
-    finally:
-        for temporary in beside.values():
-            temporary.unlink(missing_ok=True)
-    return list(files)

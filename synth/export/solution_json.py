@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, is_dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
+from synth.export.plain import plain
 from synth.guide import MARKERS, make_guide
 from synth.synthesis.solution import target_results
 from synth.version import __version__
@@ -51,9 +49,7 @@ def solution_to_json(solution: Solution) -> dict[str, Any]:
         "bound": None,
         "alternatives": [_alternative(task, design) for design in designs[1:]],
     }
-    plain = _plain(content)
-    assert isinstance(plain, dict)  # noqa: S101 - for the type checker: a dict remains one
-    return plain
+    return plain(content)
 
 
 _SHAPE_FIELDS = (
@@ -162,18 +158,3 @@ def _placement(guide: Guide, placement: Placement) -> dict[str, object]:
             )
         ],
     }
-
-
-def _plain(value: object) -> object:
-    """Return a value with arrays as lists, frozen values as dicts, and None for NaN and infinity."""
-    if is_dataclass(value) and not isinstance(value, type):
-        value = asdict(value)
-    if isinstance(value, dict):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, np.ndarray | np.generic):
-        value = value.tolist()
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Mapping
 
-_PER_METRE = {"mm": 1000.0, "cm": 100.0, "m": 1.0}  # to divide by: 455 / 1000 is 0.455 exactly
+PER_METRE = {"mm": 1000.0, "cm": 100.0, "m": 1.0}  # to divide by: 455 / 1000 is 0.455 exactly
 _ROBOT_FILES = {".yaml", ".yml", ".json"}
 
 
@@ -89,22 +89,22 @@ def _robot(document: Document, name: str) -> Robot:
     entry = validate(document, RobotFile)
     if entry is None or document.is_wrong:
         raise document.error()
-    return _to_robot(entry, _PER_METRE[entry.length_unit], name)
+    return to_robot(entry, PER_METRE[entry.length_unit], name)
 
 
 def _task(document: Document, directory: Path, name: str) -> Task:
     """Read a task's document; the robot and the names are checked even where the rest is wrong."""
     content = document.value if isinstance(document.value, dict) else {}
     reference = content.get("robot")
-    robot = _named_robot(document, reference, directory) if isinstance(reference, str) else None
+    robot = named_robot(document, reference, directory) if isinstance(reference, str) else None
     _report_names_given_twice(document, content.get("targets"))
     file = validate(document, TaskFile)
     if file is None or document.is_wrong:
         raise document.error()
-    per_metre = _PER_METRE[file.length_unit]
+    per_metre = PER_METRE[file.length_unit]
     if isinstance(file.robot, RobotEntry):
         unit = file.length_unit if file.robot.length_unit is None else file.robot.length_unit
-        robot = _to_robot(file.robot, _PER_METRE[unit], "inline robot")
+        robot = to_robot(file.robot, PER_METRE[unit], "inline robot")
     assert robot is not None, "a robot is named or described"  # noqa: S101 - for the type checker
     return Task(
         name=file.name or name,
@@ -119,7 +119,7 @@ def _task(document: Document, directory: Path, name: str) -> Task:
     )
 
 
-def _named_robot(document: Document, reference: str, directory: Path) -> Robot | None:
+def named_robot(document: Document, reference: str, directory: Path) -> Robot | None:
     """Return a preset or the robot of a file, or None with the mistakes reported."""
     if reference in PRESETS:
         return PRESETS[reference]
@@ -165,7 +165,8 @@ def _to_target(entry: TargetEntry, per_metre: float, name: str) -> PointTarget:
     )
 
 
-def _to_robot(entry: RobotEntry, per_metre: float, name: str) -> Robot:
+def to_robot(entry: RobotEntry, per_metre: float, name: str) -> Robot:
+    """Return the robot that an entry describes; `name` if it states none."""
     link, limits, full = entry.link, entry.joint_limits_deg, JointLimits()
     tip_offset = 0.5 * entry.d34 if entry.tip_offset is None else entry.tip_offset
     bend = link.max_total_bend_deg

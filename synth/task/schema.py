@@ -43,7 +43,7 @@ def _one_line(text: str) -> str:
     return text
 
 
-def _absent() -> Any:
+def absent() -> Any:
     """Return the value of a key that was not written; to write null is a mistake all the same."""
     return None
 
@@ -68,43 +68,45 @@ def ends(value: float | list[float]) -> tuple[float, float]:
     return (value[0], value[1]) if isinstance(value, list) else (value, value)
 
 
-class _Strict(BaseModel):
+class Strict(BaseModel):
+    """Base of all entries: no unknown key, no silent conversion, no NaN."""
+
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
 
 
-class LinkEntry(_Strict):
+class LinkEntry(Strict):
     """The malleable link."""
 
     length: PositiveOrRange = Field(description="length of its centreline, or [low, high] if it stretches")
     min_bend_radius: Positive = Field(description="smallest radius of its centreline")
-    diameter: Positive = Field(default_factory=_absent, description="outer diameter; 0 if absent")
-    max_total_bend_deg: Positive = Field(default_factory=_absent, description="no limit if absent")
+    diameter: Positive = Field(default_factory=absent, description="outer diameter; 0 if absent")
+    max_total_bend_deg: Positive = Field(default_factory=absent, description="no limit if absent")
 
 
-class RigidLinkEntry(_Strict):
+class RigidLinkEntry(Strict):
     """The rigid link; [low, high] is to be chosen by the synthesis."""
 
     d35: PositiveOrRange = Field(description="distance from P3 to the end effector P5")
     d45: PositiveOrRange = Field(description="distance from P4 to the end effector P5")
 
 
-class JointLimitsEntry(_Strict):
+class JointLimitsEntry(Strict):
     """Ranges of the joints in degrees."""
 
-    base: AngleRange = Field(default_factory=_absent, description="range of joint 1; a full turn if absent")
-    second: AngleRange = Field(default_factory=_absent, description="range of joint 2; a full turn if absent")
+    base: AngleRange = Field(default_factory=absent, description="range of joint 1; a full turn if absent")
+    second: AngleRange = Field(default_factory=absent, description="range of joint 2; a full turn if absent")
 
 
-class RobotEntry(_Strict):
+class RobotEntry(Strict):
     """A robot inside a task; its unit is that of the task unless it states its own."""
 
-    name: Name = Field(default_factory=_absent, description="what the robot is called")
-    length_unit: LengthUnit = Field(default_factory=_absent, description="unit of all lengths: mm, cm or m")
+    name: Name = Field(default_factory=absent, description="what the robot is called")
+    length_unit: LengthUnit = Field(default_factory=absent, description="unit of all lengths: mm, cm or m")
     d12: Positive = Field(description="distance from P1 to P2, where the malleable link starts")
     link: LinkEntry = Field(description="the malleable link: length, min_bend_radius, diameter")
     d34: Positive = Field(description="distance of the points P3 and P4 on the second axis")
     tip_offset: Coordinate = Field(
-        default_factory=_absent, description="where the link ends, from P3 towards P4; d34 / 2 if absent"
+        default_factory=absent, description="where the link ends, from P3 towards P4; d34 / 2 if absent"
     )
     rigid_link: RigidLinkEntry = Field(description="the distances d35 and d45 to the end effector")
     joint_limits_deg: JointLimitsEntry = Field(
@@ -138,27 +140,27 @@ class RobotFile(RobotEntry):
     length_unit: LengthUnit = Field(description="unit of all lengths in this file: mm, cm or m")
 
 
-class BaseEntry(_Strict):
+class BaseEntry(Strict):
     """Where the robot stands in the task frame."""
 
     position: Position = Field(default=[0.0, 0.0, 0.0], description="[x, y, z] of P1")
     yaw_deg: Angle = Field(default=0.0, description="rotation about the vertical")
 
 
-class TargetEntry(_Strict):
+class TargetEntry(Strict):
     """A point to be reached."""
 
-    name: Name = Field(default_factory=_absent, description="how the result speaks of it")
+    name: Name = Field(default_factory=absent, description="how the result speaks of it")
     position: Position = Field(description="[x, y, z] in the task frame")
-    tolerance: Positive = Field(default_factory=_absent, description="largest miss; 1 mm if absent")
+    tolerance: Positive = Field(default_factory=absent, description="largest miss; 1 mm if absent")
     weight: Positive = Field(default=1.0, description="factor of its squared miss")
 
 
-class TaskFile(_Strict):
+class TaskFile(Strict):
     """A task file."""
 
     synth: Annotated[int, Field(ge=1, le=1)] = Field(description="version of this format: 1")
-    name: Name = Field(default_factory=_absent, description="what the task is called")
+    name: Name = Field(default_factory=absent, description="what the task is called")
     length_unit: LengthUnit = Field(description="unit of all lengths in this file: mm, cm or m")
     robot: Annotated[
         Annotated[str, Tag(TEXT)] | Annotated[RobotEntry, Tag(MAPPING)],
