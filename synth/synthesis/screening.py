@@ -38,9 +38,11 @@ _DISTINCT = 0.03
 _ARM_LENGTH = 0.5
 # Mean squared misses below this, m^2, are all as good: then the gentler bend goes first.
 _SETTLED = 1e-8
-# In the end the best shapes are tried again with branches swapped.
-_SWAPPED, _SWAPS = 8, 50
-_SWAP_CHANCES = (0.1, 0.25, 0.5, 1.0)
+# The search over branches: rounds, shapes kept, children of each, and how many targets a child swaps on
+# average. It ends where the mean squared miss is below _EXACT, m^2.
+_SWAP_ROUNDS, _PARENTS, _CHILDREN = 12, 10, 20
+_SWAPPED_TARGETS = (1, 2, 4, np.inf)
+_EXACT = 1e-14
 _SHEET = 0.04  # a branch that misses by more than this, m, is no other sheet of the same surface
 
 
@@ -84,7 +86,7 @@ def _starts(task: Task, rng: np.random.Generator) -> Iterator[Start]:
         if (refined := _screened(task, rng, size, shortlist, count)) is not None:
             yield from itertools.islice(_distinct(task, refined), _STARTS_PER_STEP)
     if refined is not None:
-        yield from _distinct(task, refine(task, *_with_swapped_branches(task, refined, rng)))
+        yield from _distinct(task, _with_branches_swapped(task, refined, rng))
 
 
 def _screened(task: Task, rng: np.random.Generator, size: int, shortlist: int, count: int) -> Refined | None:
@@ -127,23 +129,39 @@ def _distinct(task: Task, refined: Refined) -> Iterator[Start]:
             yield Start(population.arm(index, task.base), refined.joints[index])
 
 
-def _with_swapped_branches(
-    task: Task, refined: Refined, rng: np.random.Generator
-) -> tuple[Population, FloatArray]:
-    """Return the best shapes many times over, some targets moved to their other branch of joint 2.
+def _with_branches_swapped(task: Task, refined: Refined, rng: np.random.Generator) -> Refined:
+    """Return the best shapes after a search over which target takes which branch of joint 2.
 
-    Where the axes nearly meet, the workspace has two sheets a few millimetres apart, and which target
-    belongs to which sheet is a riddle that no local step solves.
+    Where the axes nearly meet or are nearly parallel, the workspace has two sheets a few millimetres
+    apart, and no local step moves a target from one to the other. So the best shapes are tried with some
+    targets on their other branch, the best of these again, and so on.
 
     Args:
         task: The task.
         refined: Shapes at the bottoms of their valleys.
         rng: Source of randomness.
+    """
+    for _ in range(_SWAP_ROUNDS):
+        swapped = _swapped_once(task, refined, rng)
+        if swapped is None or refined.cost.min() < _EXACT:
+            break
+        refined = _better(refined, refine(task, *swapped))
+    return refined
+
+
+def _swapped_once(
+    task: Task, refined: Refined, rng: np.random.Generator
+) -> tuple[Population, FloatArray] | None:
+    """Return the best shapes many times over, some targets moved to their other branch.
 
     Returns:
-        Shapes, of shape (N,), and the angles of joint 2 to refine them from, shape (N, n), rad.
+        Shapes, of shape (N,), and the angles of joint 2 to refine them from, shape (N, n), rad; None if
+        no target has another branch nearby.
     """
-    best = np.argsort(refined.cost, kind="stable")[:_SWAPPED]
+    # Shapes that miss alike are mostly one surface, bent in several ways: two of a kind are enough.
+    order = np.argsort(refined.cost, kind="stable")
+    kinds = np.round(np.log(refined.cost[order] + _EXACT), 2)
+    best = order[[np.sum(kinds[:place] == kind) < 2 for place, kind in enumerate(kinds)]][:_PARENTS]
     population, theta2 = refined.population.take(best), refined.joints[best, :, 1]
     limits, kinematics = task.robot.joint_limits, population.kinematics.each_target()
     both = into_turn(kinematics.branches(task.positions)[..., 1], limits.second.middle)
@@ -151,10 +169,21 @@ def _with_swapped_branches(
     swapped = np.take_along_axis(both, other[..., None], axis=-1)[..., 0]
     swapped = np.clip(swapped, limits.second.lower, limits.second.upper)
     near = kinematics.miss(swapped, task.positions, limits.base) < _SHEET
-    copies = np.repeat(np.arange(len(best)), _SWAPS)
-    chance = rng.choice(_SWAP_CHANCES, len(copies))
+    if not near.any():
+        return None
+    copies = np.repeat(np.arange(len(best)), _CHILDREN)
+    chance = np.minimum(rng.choice(_SWAPPED_TARGETS, len(copies)) / len(task.targets), 1.0)
     swap = near[copies] & (rng.uniform(size=(len(copies), len(task.targets))) < chance[:, None])
     return population.take(copies), np.where(swap, swapped[copies], theta2[copies])
+
+
+def _better(one: Refined, other: Refined) -> Refined:
+    """Return as many of the best of both as there are of the first."""
+    cost = np.concatenate([one.cost, other.cost])
+    best = np.argsort(cost, kind="stable")[: len(one.cost)]
+    unknowns = np.concatenate([one.population.unknowns, other.population.unknowns])
+    joints = np.concatenate([one.joints, other.joints])
+    return Refined(Population(one.population.robot, unknowns[best]), joints[best], cost[best])
 
 
 def estimated_misses(task: Task, population: Population) -> FloatArray:
