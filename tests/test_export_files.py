@@ -32,14 +32,12 @@ def make_solution(name="two crates", robot=ROBOT, count=3, offset=0.0, length=0.
     task = Task(name, robot, targets, base, floor)
     design = Design(arm, verify(task, arm))
     status = Status.FOUND if all(design.verification.within_tolerance) else Status.BEST_EFFORT
-    return Solution(task, status, status.sentence, 7, (design,), 3, Timing(1.0, 0.25, 0.5, 0.25))
+    return Solution(task, status, status.sentence, (), 7, (design,), 3, Timing(1.0, 0.25, 0.5, 0.25))
 
 
 SOLUTION = make_solution()
 GUIDE = make_guide(SOLUTION.task, SOLUTION.best)
-NOTHING = replace(
-    SOLUTION, status=Status.FAILED, message=f"{Status.FAILED.sentence}: ran out of luck", designs=()
-)
+NOTHING = replace(SOLUTION, status=Status.FAILED, reasons=("ran out of luck",), designs=())
 
 
 def page_of(content):

@@ -28,7 +28,7 @@ def make_solution(tolerance=2e-3, offset=1e-4):
             task = Task("crates", ROBOT, targets, BASE, floor=None)
         designs.append(Design(arm, verify(task, arm)))
     status = Status.FOUND if designs[0].verification.found else Status.BEST_EFFORT
-    return Solution(task, status, status.sentence, 7, tuple(designs), 3, Timing(1.0, 0.25, 0.5, 0.25))
+    return Solution(task, status, status.sentence, (), 7, tuple(designs), 3, Timing(1.0, 0.25, 0.5, 0.25))
 
 
 SOLUTION = make_solution()

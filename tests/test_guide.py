@@ -39,8 +39,8 @@ ARM = make_arm()
 JOINTS = [[1.0, 2.0], [4.0, 3.3], [2.5, 4.6]]
 TASK, DESIGN = make_design(ARM, JOINTS, np.zeros((3, 3)))
 GUIDE = make_guide(TASK, DESIGN)
-SOLUTION = Solution(TASK, Status.FOUND, Status.FOUND.sentence, 7, (DESIGN,), 3, TIMING)
-NOTHING = replace(SOLUTION, status=Status.FAILED, message=f"{Status.FAILED.sentence}: no; never", designs=())
+SOLUTION = Solution(TASK, Status.FOUND, Status.FOUND.sentence, (), 7, (DESIGN,), 3, TIMING)
+NOTHING = replace(SOLUTION, status=Status.FAILED, reasons=("no", "never"), designs=())
 
 curvature = st.floats(-6.0, 6.0)
 arms = st.builds(
@@ -215,7 +215,7 @@ def test_the_text_holds_the_headline_the_angle_and_the_points():
 
 def test_many_targets_are_summed_up():
     task, design = make_design(ARM, [[1.0, 2.0]] * 14, np.outer(np.arange(14) - 7, [1e-3, 0, 0]))
-    text = summary_text(Solution(task, Status.BEST_EFFORT, "x", 0, (design, design), 1, TIMING))
+    text = summary_text(Solution(task, Status.BEST_EFFORT, "x", (), 0, (design, design), 1, TIMING))
     assert "of 14 targets are within tolerance; the 10 worst:" in text
     assert "2 distinct shapes" in text
     assert len(text.splitlines()) < 20

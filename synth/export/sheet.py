@@ -90,8 +90,8 @@ def _header(page: Page, solution: Solution) -> None:
         band.set(xticks=[], yticks=[], facecolor="black")
         sentence = textwrap.shorten(f"NOT FOUND: {solution.status.sentence}", 84)
         page.text(MARGIN + 3.0, 26.5, sentence, 11.5, color="white", weight="bold")
-        reasons = solution.message.removeprefix(solution.status.sentence).lstrip(": ")
-        page.paragraph(MARGIN, 33.5, textwrap.shorten(reasons, 260, placeholder=" …"), 130, size=7.0)
+        reasons = textwrap.shorten("; ".join(solution.reasons), 260, placeholder=" …")
+        page.paragraph(MARGIN, 33.5, reasons, 130, size=7.0)
 
 
 def _nothing_to_do(page: Page) -> None:

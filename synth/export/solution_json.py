@@ -41,6 +41,7 @@ def solution_to_json(solution: Solution) -> dict[str, Any]:
         "task": task.name,
         "status": solution.status.value,
         "message": solution.message,
+        "reasons": solution.reasons,
         "seed": solution.seed,
         "starts": solution.starts,
         "time": solution.time,

@@ -12,6 +12,11 @@ distances:
     ArmDistances <-> points <-> SweptCircle <-> Invariants -> CategoryDistances -> Category
          +------> WorkspaceSurface <----+
 
+The way back from targets is exact for few of them: five have at most two designs, four with a known R at
+most six (`designs_through_five`, `designs_through_four`), fewer have families (`sample_designs`), and so
+have targets in a plane or on a sphere (`planes_through`, `spheres_through`, `circle_through`). Every arm
+has one `cognate`, another arm with the same surface.
+
 SI units; axis 1 is z and P1 the origin; all values are frozen. Plain numpy, and no solver.
 """
 
@@ -24,6 +29,19 @@ from synth.geometry.distances import (
     realise,
     squared_distances,
 )
+from synth.geometry.exact import (
+    Designs,
+    PlaneFamily,
+    SphereFamily,
+    circle_through,
+    cognate,
+    designs_through_five,
+    designs_through_four,
+    is_generic,
+    planes_through,
+    sample_designs,
+    spheres_through,
+)
 from synth.geometry.gamma import WorkspaceSurface, distance_polynomials, gamma_determinant
 from synth.geometry.invariants import Invariants
 from synth.geometry.trigonometric import critical_angles, sampling_angles
@@ -32,16 +50,27 @@ __all__ = [
     "ArmDistances",
     "Category",
     "CategoryDistances",
+    "Designs",
     "Invariants",
+    "PlaneFamily",
+    "SphereFamily",
     "SweptCircle",
     "WorkspaceSurface",
     "cayley_menger",
     "cayley_menger_bideterminant",
+    "circle_through",
     "classify",
+    "cognate",
     "critical_angles",
+    "designs_through_five",
+    "designs_through_four",
     "distance_polynomials",
     "gamma_determinant",
+    "is_generic",
+    "planes_through",
     "realise",
+    "sample_designs",
     "sampling_angles",
+    "spheres_through",
     "squared_distances",
 ]

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.guide.guide import make_guide
-from synth.synthesis import Status
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,13 +30,9 @@ def summary_text(solution: Solution) -> str:
         Lines without a line break at the end.
     """
     headline = f"{solution.task.name}: {solution.status.sentence}"
-    # The message is the status' sentence and what more there is to say.
-    reasons = solution.message.removeprefix(solution.status.sentence).lstrip(": ")
-    bullets = [reason for reason in reasons.split("; ") if reason]
+    bullets = list(solution.reasons)
     if solution.designs:
         arm = solution.robot
-        if solution.status in {Status.BEST_EFFORT, Status.LIMIT}:
-            bullets = []  # they say which targets are missed, as the lines of the targets do
         bullets += [
             *_target_lines(solution.targets),
             arm.category_distances.describe(),

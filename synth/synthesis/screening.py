@@ -13,15 +13,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.robot import Arm, into_turn
+from synth.synthesis.exact_starts import exact_designs, nearest_to_designs
 from synth.synthesis.population import Population
 from synth.synthesis.refinement import Refined, category_offsets, refine, relative_weights
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
+    from synth.geometry import Invariants
     from synth.task import Task
 
 _MOST_TARGETS = 40
@@ -29,6 +31,7 @@ _MOST_TARGETS = 40
 # first step, which takes a tenth of the second one's time.
 _STEPS = ((20_000, 1_000, 200), (200_000, 4_000, 400))
 _STARTS_PER_STEP = 12
+_PER_DESIGN = 6  # shapes looked at near each exact design, where there are any
 # Misses are only compared up to here, m: beyond, a shape is far off and by how much says little.
 _FAR = 0.3
 # Misses below this, m, are as good as none for a start: the refinement sees to them.
@@ -81,40 +84,33 @@ def _fewer_targets(task: Task, rng: np.random.Generator) -> Task:
 
 def _starts(task: Task, rng: np.random.Generator) -> Iterator[Start]:
     """Yield start points for a task of few targets, each step with more effort than the one before."""
-    refined = None
+    designs, refined = exact_designs(task) or (), None
     for size, shortlist, count in _STEPS:
-        if (refined := _screened(task, rng, size, shortlist, count)) is not None:
-            yield from itertools.islice(_distinct(task, refined), _STARTS_PER_STEP)
+        population = Population.sample(task.robot, size, rng)
+        if task.floor is not None:
+            population = population.take(population.end[1][:, 2] > task.floor)
+        if not len(population.length):
+            return
+        cost = _costs(task, estimated_misses(task, population)) + _category_cost(task, population)
+        population = population.take(_promising(population, cost, shortlist, designs))
+        theta2, misses = limited_misses(task, population)
+        cost = _costs(task, misses) + _category_cost(task, population)
+        best = _promising(population, cost, count, designs)
+        refined = refine(task, population.take(best), theta2[:, best].T)
+        yield from itertools.islice(_distinct(task, refined), _STARTS_PER_STEP)
     if refined is not None:
         yield from _distinct(task, _with_branches_swapped(task, refined, rng))
 
 
-def _screened(task: Task, rng: np.random.Generator, size: int, shortlist: int, count: int) -> Refined | None:
-    """Return the most promising of random shapes, refined; None if the floor leaves none.
+def _promising(
+    population: Population, cost: FloatArray, count: int, designs: Sequence[Invariants]
+) -> NDArray[np.intp]:
+    """Return which shapes to look at closer: `count` by their misses, and those nearest to exact designs.
 
-    Args:
-        task: The task.
-        rng: Source of randomness.
-        size: How many shapes to draw.
-        shortlist: How many of them to look at with the joint limits.
-        count: How many of these to refine.
+    Among near misses the gentle bends come first: the refinement sees to the rest.
     """
-    population = Population.sample(task.robot, size, rng)
-    if task.floor is not None:
-        population = population.take(population.end[1][:, 2] > task.floor)
-    if not len(population.length):
-        return None
-    cost = _costs(task, estimated_misses(task, population)) + _category_cost(task, population)
-    population = population.take(_promising(cost, population)[:shortlist])
-    theta2, misses = limited_misses(task, population)
-    cost = _costs(task, misses) + _category_cost(task, population)
-    promising = _promising(cost, population)[:count]
-    return refine(task, population.take(promising), theta2[:, promising].T)
-
-
-def _promising(cost: FloatArray, population: Population) -> NDArray[np.intp]:
-    """Return shapes in order: near misses by gentleness of the bend, then the others by their misses."""
-    return np.lexsort([population.bending, np.maximum(cost, _NEAR**2)])
+    best = np.lexsort([population.bending, np.maximum(cost, _NEAR**2)])[:count]
+    return np.union1d(best, nearest_to_designs(population, designs, _PER_DESIGN)) if designs else best
 
 
 def _distinct(task: Task, refined: Refined) -> Iterator[Start]:

@@ -103,7 +103,8 @@ class Solution:
     Attributes:
         task: What was asked.
         status: How it ended.
-        message: The same as a sentence, with the reasons.
+        message: The same as a sentence, with the misses and the reasons.
+        reasons: Why no more was found, as far as that is known: proofs, algebra, limits that block.
         seed: Seed of the search: the same task, seed and version give the same answer.
         designs: Distinct shapes, the best first; only shapes that the hardware can take.
         starts: How many start points were polished.
@@ -113,6 +114,7 @@ class Solution:
     task: Task
     status: Status
     message: str
+    reasons: tuple[str, ...]
     seed: int
     designs: tuple[Design, ...]
     starts: int

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.errors import SolverError
+from synth.synthesis.exact_starts import exact_designs
 from synth.synthesis.nlp import NlpAnswer, SynthesisNlp
 from synth.synthesis.population import ARCS
 from synth.synthesis.reach import why_impossible
@@ -127,32 +128,28 @@ class _Search:
     def solution(self) -> Solution:
         """Rank what was found and say what it is worth."""
         designs = _best_of(self.task, self.designs)
-        status, message = self._verdict(designs)
+        status, reasons = self._verdict(designs)
+        misses = _what_misses(self.task, designs[0]) if designs else []
+        message = ": ".join(filter(None, [status.sentence, "; ".join([*misses, *reasons])]))
         total = time.perf_counter() - self._began
         timing = Timing(total, self._screening, self._solving, self._verifying)
-        return Solution(self.task, status, message, self.seed, designs, self.starts, timing)
+        return Solution(self.task, status, message, reasons, self.seed, designs, self.starts, timing)
 
-    def _verdict(self, designs: tuple[Design, ...]) -> tuple[Status, str]:
-        details: list[str] = []
+    def _verdict(self, designs: tuple[Design, ...]) -> tuple[Status, tuple[str, ...]]:
+        """Return how the search ended, and why it found no more, as far as that is known."""
         if designs and designs[0].verification.found:
-            status = Status.FOUND
-        elif self._impossible:
-            status, details = Status.PROVEN_IMPOSSIBLE, list(self._impossible)
-        elif self.interrupted:
-            status = Status.LIMIT
-        elif self.breakdowns and not (self.designs or self.blocked):
-            status, details = Status.FAILED, self.breakdowns[:1]
-        else:
-            status = Status.BEST_EFFORT
-        sentence = status.sentence
-        if status in {Status.LIMIT, Status.BEST_EFFORT}:
-            if designs:
-                details = _what_misses(self.task, designs[0])
-            else:  # as far as the shape tells that breaks the fewest limits
-                sentence = "no shape was found that the hardware can take"
-                nearest = min((d.verification.violations for d in self.blocked), key=len, default=())
-                details = [violation.sentence for violation in nearest]
-        return status, ": ".join(filter(None, [sentence, "; ".join(details)]))
+            return Status.FOUND, ()
+        if self._impossible:
+            return Status.PROVEN_IMPOSSIBLE, self._impossible
+        if self.breakdowns and not (self.designs or self.blocked):
+            return Status.FAILED, tuple(self.breakdowns[:1])
+        status = Status.LIMIT if self.interrupted else Status.BEST_EFFORT
+        if designs:
+            return status, _why_not_exact(self.task)
+        # As far as the shape tells that breaks the fewest limits.
+        nearest = min((d.verification.violations for d in self.blocked), key=len, default=())
+        blocking = (violation.sentence for violation in nearest)
+        return status, ("no shape was found that the hardware can take", *blocking)
 
     def _polish(self, nlp: SynthesisNlp, start: Start) -> None:
         """Solve from one start; raise the floor a little where the link dips below it."""
@@ -212,6 +209,14 @@ def _what_misses(task: Task, design: Design) -> list[str]:
     order = [int(i) for i in np.argsort(-check.misses / task.tolerances) if not check.within_tolerance[i]]
     sentences = [f"{task.targets[i].name} misses by {1e3 * check.misses[i]:.2f} mm" for i in order]
     return sentences if len(order) <= 3 else [*sentences[:3], f"and {len(order) - 3} more"]
+
+
+def _why_not_exact(task: Task) -> tuple[str, ...]:
+    """Return a sentence if algebra knows of no arm at all that meets the targets exactly."""
+    if exact_designs(task) != ():
+        return ()
+    count = len(task.targets)
+    return (f"no arm with this rigid link passes exactly through such {count} targets, by algebra",)
 
 
 def _rank(task: Task, design: Design) -> tuple[int, float]:
