@@ -64,4 +64,4 @@ def test_the_sentence():
 def test_values_are_those_of_the_files_and_each_has_a_sentence(category):
     assert category.value == category.name.lower()
     assert Category(category.value) is category
-    assert category.description.endswith(".")
+    assert category.sentence.endswith(".")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from enum import Enum
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING
+
+from synth.sentences import SentenceEnum
 
 if TYPE_CHECKING:
     from synth.geometry.invariants import Invariants
@@ -16,26 +17,13 @@ LENGTH_TOLERANCE = 1e-3  # m
 ANGLE_TOLERANCE = math.radians(0.1)
 
 
-class Category(Enum):
-    """Kind of arm, by how axis 2 lies to axis 1 (Clark and Rojas 2020, section II).
-
-    Attributes:
-        description: One sentence for the user.
-    """
-
-    description: str
+class Category(SentenceEnum):
+    """Kind of arm, by how axis 2 lies to axis 1 (Clark and Rojas 2020, section II)."""
 
     GENERAL = "general", "The axes neither meet at P1 or P2 nor are parallel: a torus-like quartic surface."
     PUMA = "puma", "Axis 2 passes through P2: the workspace lies on a sphere about P2."
     SCARA = "scara", "The axes are parallel: the workspace lies in a plane across axis 1."
     SPHERICAL = "spherical", "Axis 2 passes through P1: the workspace lies on a sphere about P1."
-
-    def __new__(cls, value: str, description: str) -> Self:
-        """Take the sentence off the value."""
-        member = object.__new__(cls)
-        member._value_ = value
-        member.description = description
-        return member
 
 
 @dataclass(frozen=True)

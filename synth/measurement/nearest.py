@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from enum import Enum
-from typing import TYPE_CHECKING, Literal, Self
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from synth.arrays import FloatArray, frozen
 from synth.errors import GeometryError
 from synth.geometry import realise, squared_distances
 from synth.measurement.relaxation import nearest_gram
+from synth.sentences import SentenceEnum
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,26 +27,13 @@ _STIFFEST = 1e4
 _SCHEDULES = ((_STIFFEST,), (1.0, 1e2, _STIFFEST))
 
 
-class Fit(Enum):
-    """How well points in space fit measured distances.
-
-    Attributes:
-        sentence: For the user.
-    """
-
-    sentence: str
+class Fit(SentenceEnum):
+    """How well points in space fit measured distances."""
 
     AS_GIVEN = "as_given", "points in space have exactly these distances"
     WITHIN_BOUNDS = "within_bounds", "points in space have distances within the bounds of these"
     NOT_FOUND = "not_found", "no points in space were found whose distances keep the bounds"
     IMPOSSIBLE = "impossible", "no points in any space have distances that keep the bounds"
-
-    def __new__(cls, value: str, sentence: str) -> Self:
-        """Take the sentence off the value."""
-        member = object.__new__(cls)
-        member._value_ = value
-        member.sentence = sentence
-        return member
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING
 
 from synth.arrays import FloatArray, frozen
 from synth.errors import SynthError
+from synth.sentences import SentenceEnum
 
 if TYPE_CHECKING:
     from synth.robot import Arm
@@ -15,23 +15,14 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 
-class Status(Enum):
-    """How a synthesis ended; `sentence` is for the user."""
+class Status(SentenceEnum):
+    """How a synthesis ended."""
 
     FOUND = "found", "every target is within its tolerance"
     BEST_EFFORT = "best_effort", "no shape was found that reaches every target; this is the nearest found"
     PROVEN_IMPOSSIBLE = "proven_impossible", "no shape of this robot can do the task"
     LIMIT = "limit", "stopped before the search was complete; this is the best shape so far"
     FAILED = "failed", "the solver broke down"
-
-    sentence: str
-
-    def __new__(cls, value: str, sentence: str) -> Self:
-        """Make a member whose value is the word of the file format."""
-        member = object.__new__(cls)
-        member._value_ = value
-        member.sentence = sentence
-        return member
 
 
 class NotFoundError(SynthError):

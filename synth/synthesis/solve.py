@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,7 @@ import numpy as np
 
 from synth.errors import SolverError
 from synth.synthesis.exact_starts import exact_designs
-from synth.synthesis.nlp import NlpAnswer, SynthesisNlp
+from synth.synthesis.nlp import SynthesisNlp
 from synth.synthesis.population import ARCS
 from synth.synthesis.reach import why_impossible
 from synth.synthesis.screening import Start, starts
@@ -20,7 +21,7 @@ from synth.synthesis.verification import Violation, verify
 from synth.task import Objective
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from synth.arrays import FloatArray
     from synth.robot import Arm
@@ -70,7 +71,7 @@ def solve(
     Returns:
         The solution, whatever was found; its status says what it is worth.
     """
-    search = _Search(task, seed, time_limit, stop or _never, progress or _silent)
+    search = _Search(task, seed, _Clock(time_limit), stop or _never, progress or _silent)
     search.run()
     return search.solution()
 
@@ -83,13 +84,37 @@ def _silent(_progress: Progress) -> None:
     pass
 
 
+class _Clock:
+    """Where the time goes."""
+
+    def __init__(self, time_limit: float) -> None:
+        self._began = time.perf_counter()
+        self._time_limit = time_limit
+        self._spent = {"screening": 0.0, "solving": 0.0, "verifying": 0.0}
+
+    @contextmanager
+    def on(self, part: str) -> Iterator[None]:
+        """Count the time of a block under the name of a part."""
+        began = time.perf_counter()
+        try:
+            yield
+        finally:
+            self._spent[part] += time.perf_counter() - began
+
+    def is_up(self) -> bool:
+        return time.perf_counter() - self._began > self._time_limit
+
+    def timing(self) -> Timing:
+        return Timing(time.perf_counter() - self._began, **self._spent)
+
+
 @dataclass
 class _Search:
-    """One run of `solve`: the designs so far, and the clock."""
+    """One run of `solve`: the designs so far."""
 
     task: Task
     seed: int
-    time_limit: float
+    clock: _Clock
     stop: Callable[[], bool]
     progress: Callable[[Progress], None]
     designs: list[Design] = field(default_factory=list)
@@ -100,30 +125,24 @@ class _Search:
     interrupted: bool = False
 
     def __post_init__(self) -> None:
-        self._began = time.perf_counter()
-        self._solving = self._verifying = self._screening = 0.0
         self._impossible = why_impossible(self.task)
         self._starts_at_most = _STARTS_WHEN_IMPOSSIBLE if self._impossible else _STARTS_AT_MOST
 
     def run(self) -> None:
         """Polish start points until enough is found, or the time is up."""
-        candidates = starts(self.task, np.random.default_rng(self.seed))
-        began = time.perf_counter()
         nlp: SynthesisNlp | None = None
-        for start in candidates:
-            self._screening += time.perf_counter() - began
+        for start in self._start_points():
             if self._out_of_time():
                 if not self.designs:  # a start that was not polished is better than nothing
                     self._keep(start.arm, start.joints)
-                break
-            nlp = nlp or self._timed_nlp(0.0)
+                return
+            nlp = nlp or self._nlp(floor_margin=0.0)
             self._polish(nlp, start)
             self.starts += 1
             self.starts_found += self._found()
             self._report()
             if self.starts >= self._starts_at_most or self.starts_found > _STARTS_AFTER_FOUND:
-                break
-            began = time.perf_counter()
+                return
 
     def solution(self) -> Solution:
         """Rank what was found and say what it is worth."""
@@ -131,9 +150,18 @@ class _Search:
         status, reasons = self._verdict(designs)
         misses = _what_misses(self.task, designs[0]) if designs else []
         message = ": ".join(filter(None, [status.sentence, "; ".join([*misses, *reasons])]))
-        total = time.perf_counter() - self._began
-        timing = Timing(total, self._screening, self._solving, self._verifying)
-        return Solution(self.task, status, message, reasons, self.seed, designs, self.starts, timing)
+        return Solution(
+            self.task, status, message, reasons, self.seed, designs, self.starts, self.clock.timing()
+        )
+
+    def _start_points(self) -> Iterator[Start]:
+        candidates = starts(self.task, np.random.default_rng(self.seed))
+        while True:
+            with self.clock.on("screening"):
+                start = next(candidates, None)
+            if start is None:
+                return
+            yield start
 
     def _verdict(self, designs: tuple[Design, ...]) -> tuple[Status, tuple[str, ...]]:
         """Return how the search ended, and why it found no more, as far as that is known."""
@@ -155,47 +183,35 @@ class _Search:
         """Solve from one start; raise the floor a little where the link dips below it."""
         arm, joints, margin = start.arm, start.joints, 0.0
         for _ in range(_FLOOR_REPAIRS):
-            answer = self._timed_solve(nlp, arm, joints)
-            if answer is None:
+            try:
+                with self.clock.on("solving"):
+                    answer = nlp.solve(arm, joints)
+            except SolverError as error:
+                self.breakdowns.append(str(error))
                 return
             arm, joints = answer.arm, answer.joints
             violations = self._keep(arm, joints)
             if [violation.limit for violation in violations] != ["floor: link"]:
                 return
             margin += 1.5 * violations[0].amount
-            nlp = self._timed_nlp(margin)
+            nlp = self._nlp(margin)
+
+    def _nlp(self, floor_margin: float) -> SynthesisNlp:
+        with self.clock.on("solving"):
+            return SynthesisNlp(self.task, ARCS, self._out_of_time, floor_margin)
 
     def _keep(self, arm: Arm, joints: FloatArray) -> tuple[Violation, ...]:
         """Check a shape, keep it where it belongs, and return the limits it breaks."""
-        began = time.perf_counter()
-        design = Design(arm, verify(self.task, arm, joints))
-        self._verifying += time.perf_counter() - began
+        with self.clock.on("verifying"):
+            design = Design(arm, verify(self.task, arm, joints))
         (self.designs if design.verification.possible else self.blocked).append(design)
         return design.verification.violations
-
-    def _timed_nlp(self, floor_margin: float) -> SynthesisNlp:
-        began = time.perf_counter()
-        nlp = SynthesisNlp(self.task, ARCS, self._out_of_time, floor_margin)
-        self._solving += time.perf_counter() - began
-        return nlp
-
-    def _timed_solve(self, nlp: SynthesisNlp, arm: Arm, joints: FloatArray) -> NlpAnswer | None:
-        began = time.perf_counter()
-        try:
-            return nlp.solve(arm, joints)
-        except SolverError as error:
-            self.breakdowns.append(str(error))
-            return None
-        finally:
-            self._solving += time.perf_counter() - began
 
     def _found(self) -> bool:
         return any(design.verification.found for design in self.designs)
 
     def _out_of_time(self) -> bool:
-        self.interrupted = (
-            self.interrupted or self.stop() or time.perf_counter() - self._began > self.time_limit
-        )
+        self.interrupted = self.interrupted or self.stop() or self.clock.is_up()
         return self.interrupted
 
     def _report(self) -> None:
