@@ -33,8 +33,9 @@ _STARTS_AFTER_FOUND = 6  # for distinct, gentler and nearer alternatives
 _ALTERNATIVES = 8
 # Shapes whose objective is above this multiple of the best one's are no alternatives to it.
 _COMPARABLE = 1.5
-# A found shape that uses less than this part of every tolerance leaves the rest to the hand.
-_AMPLE = 0.2
+# A shape that uses less than this part of every tolerance meets the targets exactly: what it misses is
+# the price of the gentlest bend.
+_EXACTLY = 2e-3
 # Two shapes nearer than this all along are one: a hand places the link to about 10 mm (facts of the
 # published follow-up: 9.6 +- 2.1 mm).
 _SAME_SHAPE = 0.010
@@ -238,13 +239,13 @@ def _why_not_exact(task: Task) -> tuple[str, ...]:
 def _rank(task: Task, design: Design) -> tuple[int, float]:
     """Return what is smaller for a better design.
 
-    First those that reach every target with tolerance to spare, then those that just do, both by
-    their gentleness; then the others by the task's objective.
+    First those that meet every target exactly, then those that do within its tolerance, both by their
+    gentleness; then the others by the task's objective.
     """
     check = design.verification
     relative = check.misses / task.tolerances
     if check.found:
-        return int(relative.max() > _AMPLE), design.arm.shape.bending_energy
+        return int(relative.max() > _EXACTLY), design.arm.shape.bending_energy
     weighted = task.weights * relative**2
     return 2, float(weighted.max() if task.objective is Objective.MINIMAX else weighted.sum())
 
