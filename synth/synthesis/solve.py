@@ -36,8 +36,8 @@ _COMPARABLE = 1.5
 # A shape that uses less than this part of every tolerance meets the targets exactly: what it misses is
 # the price of the gentlest bend.
 _EXACTLY = 2e-3
-# Two shapes nearer than this all along are one: a hand places the link to about 10 mm (facts of the
-# published follow-up: 9.6 +- 2.1 mm).
+# Two shapes nearer than this all along, m, are one: a hand places the link to 9.6 +- 2.1 mm (Ranne,
+# Clark and Rojas, 2022).
 _SAME_SHAPE = 0.010
 _FLOOR_REPAIRS = 4
 
