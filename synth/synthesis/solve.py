@@ -12,9 +12,9 @@ import numpy as np
 
 from synth.errors import SolverError
 from synth.synthesis.exact_starts import exact_designs
+from synth.synthesis.impossibility import why_impossible
 from synth.synthesis.nlp import SynthesisNlp
 from synth.synthesis.population import ARCS
-from synth.synthesis.reach import why_impossible
 from synth.synthesis.screening import Start, starts
 from synth.synthesis.solution import Design, Solution, Status, Timing
 from synth.synthesis.verification import Violation, verify
