@@ -6,6 +6,7 @@ from synth.robot.hardware import Interval, JointLimits, MalleableLink, RigidLink
 from synth.robot.kinematics import Kinematics, into_turn
 from synth.robot.link import LinkShape, arc_motion, chain_end
 from synth.robot.presets import PRESETS
+from synth.robot.reach import LinkReach
 from synth.robot.workspace import SurfaceMesh, Workspace
 
 __all__ = [
@@ -16,6 +17,7 @@ __all__ = [
     "JointBranches",
     "JointLimits",
     "Kinematics",
+    "LinkReach",
     "LinkShape",
     "MalleableLink",
     "RigidLink",

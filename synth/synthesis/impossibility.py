@@ -7,9 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.robot import LinkReach
+
 if TYPE_CHECKING:
     from synth.robot import Robot
     from synth.task import Task
+
+_ROUNDING = 1e-8  # m, many times what the margin of the reach has
 
 
 def longest_rigid_link(robot: Robot) -> float:
@@ -35,8 +39,9 @@ def longest_rigid_link(robot: Robot) -> float:
 def why_impossible(task: Task) -> tuple[str, ...]:
     """Return the reasons for which no shape at all can do the task; none does not mean it can.
 
-    The end effector is at most (longest link) + (longest rigid link) from P2, by the triangle
-    inequality, and neither it nor P2, where the link starts, may be below the floor.
+    The end effector is at most the longest rigid link from the malleable link's end, and that end is
+    in the link's reach. So a target farther than that from the reach is missed by the difference. And
+    neither the end effector nor P2, where the link starts, may be below the floor.
 
     Args:
         task: The task.
@@ -44,16 +49,17 @@ def why_impossible(task: Task) -> tuple[str, ...]:
     Returns:
         One sentence for each target or limit that makes the task impossible.
     """
-    reach = task.robot.link.length.upper + longest_rigid_link(task.robot)
     reasons = []
     if task.floor is not None and task.floor > task.robot.d12:
         reasons.append(f"the link starts at P2, {1e3 * (task.floor - task.robot.d12):.1f} mm below the floor")
-    for target, position in zip(task.targets, task.positions, strict=True):
-        distance = float(np.linalg.norm(position - [0.0, 0.0, task.robot.d12]))
-        if distance > reach + target.tolerance:
+    longest = longest_rigid_link(task.robot)
+    beyond = -LinkReach(task.robot.link).margin(task.positions - np.array([0.0, 0.0, task.robot.d12]))
+    for target, position, distance in zip(task.targets, task.positions, beyond.tolist(), strict=True):
+        if distance > longest + target.tolerance + _ROUNDING:
             reasons.append(
-                f"{target.name} is {1e3 * distance:.1f} mm from P2, and the arm reaches at most "
-                f"{1e3 * reach:.1f} mm: it misses by at least {1e3 * (distance - reach):.1f} mm"
+                f"{target.name} is {1e3 * distance:.1f} mm from wherever the malleable link can end, "
+                f"and the rigid link reaches at most {1e3 * longest:.1f} mm from there: "
+                f"it misses by at least {1e3 * (distance - longest):.1f} mm"
             )
         elif task.floor is not None and position[2] < task.floor - target.tolerance:
             reasons.append(
