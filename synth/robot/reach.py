@@ -1,8 +1,9 @@
 r"""Where the malleable link's end can be, in closed form, for its length and bend radius.
 
 The direction of the end is free. The link starts at P2 along z. Its reach is a solid of revolution about
-z, so a position counts by its distance rho from that axis and its height h over P2. In units of the bend radius r, with turns to the left
-leading towards the position and turns to the right leading away from it, three lengths decide. With
+z, so a position counts by its distance rho from that axis and its height h over P2. In units of the bend
+radius r, with turns to the left leading towards the position and turns to the right leading away from it,
+three lengths decide. With
 d^2 = h^2 + (rho-1)^2 and D^2 = h^2 + (rho+1)^2, the distances from the centres of the two circles on which
 the link can start,
 
