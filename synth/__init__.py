@@ -19,18 +19,29 @@ from synth.version import __version__
 if TYPE_CHECKING:
     from synth.errors import GeometryError, InputError, Mistake, SolverError, SynthError
     from synth.export import solution_to_json, write_files
+    from synth.geometry import Box, Capsule
     from synth.guide import Guide, make_guide
     from synth.robot import PRESETS, Arm, BasePose, LinkShape, Robot, Workspace
     from synth.synthesis import NotFoundError, Solution, Status, solve, verify
-    from synth.task import Objective, PointTarget, Task, Topology, load_robot, load_task, parse_task
+    from synth.task import Objective, Obstacle, PointTarget, Task, Topology, load_robot, load_task, parse_task
 
 _ROOMS = {
     "errors": ("GeometryError", "InputError", "Mistake", "SolverError", "SynthError"),
     "export": ("solution_to_json", "write_files"),
+    "geometry": ("Box", "Capsule"),
     "guide": ("Guide", "make_guide"),
     "robot": ("PRESETS", "Arm", "BasePose", "LinkShape", "Robot", "Workspace"),
     "synthesis": ("NotFoundError", "Solution", "Status", "solve", "verify"),
-    "task": ("Objective", "PointTarget", "Task", "Topology", "load_robot", "load_task", "parse_task"),
+    "task": (
+        "Objective",
+        "Obstacle",
+        "PointTarget",
+        "Task",
+        "Topology",
+        "load_robot",
+        "load_task",
+        "parse_task",
+    ),
 }
 _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
 
@@ -38,6 +49,8 @@ __all__ = [
     "PRESETS",
     "Arm",
     "BasePose",
+    "Box",
+    "Capsule",
     "GeometryError",
     "Guide",
     "InputError",
@@ -45,6 +58,7 @@ __all__ = [
     "Mistake",
     "NotFoundError",
     "Objective",
+    "Obstacle",
     "PointTarget",
     "Robot",
     "Solution",

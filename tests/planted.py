@@ -11,20 +11,22 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import least_squares
 
-from synth.robot import PRESETS, Arm, LinkShape
+from synth.robot import PRESETS, Arm, ArmBody, LinkShape
 from synth.task import PointTarget, Task, Topology
 
 ROBOT = PRESETS["malleable-2dof"]
 
 
 def feasible(arm: Arm, floor: float = 0.0) -> bool:
-    """Whether the hardware can take a shape above the floor."""
+    """Whether the hardware can take a shape above the floor, by samples a millimetre apart."""
     link, shape = arm.robot.link, arm.shape
-    return (
+    s = np.arange(0.5 * link.diameter, shape.length, 1e-3)
+    heights = arm.robot.d12 + shape.point_at(np.append(s, shape.length))[:, 2]
+    return bool(
         link.length.contains(shape.length)
         and shape.bends.max() <= link.max_curvature
         and shape.total_bend <= link.max_total_bend
-        and arm.robot.d12 + shape.lowest() >= floor
+        and heights.min() - 0.5 * link.diameter >= floor - 2e-6
         and arm.axis_points[2:, 2].min() >= floor
     )
 
@@ -63,7 +65,7 @@ def planted_task(seed: int, count: int | None = None, topology: Topology = Topol
         theta1 = rng.uniform(limits.base.lower, limits.base.upper, 50 * count)
         theta2 = rng.uniform(limits.second.lower, limits.second.upper, 50 * count)
         points = arm.forward_kinematics(theta1, theta2)
-        points = points[points[:, 2] >= 0.0][:count]
+        points = points[(points[:, 2] >= 0.0) & (ArmBody(arm).rod_from_tube(theta2) > 0.0)][:count]
         if len(points) == count:
             break
     targets = tuple(PointTarget(f"target {i + 1}", point, 0.5e-3) for i, point in enumerate(points))

@@ -370,6 +370,60 @@ WRONG = {
     "joint limits too wide": (limits("[0, 361]"), "robot.joint_limits_deg.base", 12, "360 361"),
     "joint limits one number": (limits("90"), "robot.joint_limits_deg.base", 12, "list 90"),
     "joint limits far out": (limits("[0, 1e5]"), "robot.joint_limits_deg.base[1]", 12, "at most 720"),
+    # obstacles
+    "obstacles not a list": (task("[]", "{box: 1}"), "obstacles", 12, "a list mapping"),
+    "obstacle of no kind": (
+        task("[]", "[{name: a}]"),
+        "obstacles[0]",
+        12,
+        "no solid sphere, box and capsule",
+    ),
+    "obstacle of two kinds": (
+        task("[]", "[{sphere: {center: [0, 0, 1], radius: 1}, box: {center: [0, 0, 1], size: [1, 1, 1]}}]"),
+        "obstacles[0]",
+        12,
+        "sphere and box",
+    ),
+    "obstacle misspelt": (task("[]", "[{spere: {}}]"), "obstacles[0].spere", 12, "did you mean 'sphere'"),
+    "sphere of no radius": (
+        task("[]", "[{sphere: {center: [0, 0, 1]}}]"),
+        "obstacles[0].sphere.radius",
+        12,
+        "missing",
+    ),
+    "sphere inside out": (
+        task("[]", "[{sphere: {center: [0, 0, 1], radius: -1}}]"),
+        "obstacles[0].sphere.radius",
+        12,
+        "greater than 0",
+    ),
+    "box of two sizes": (
+        task("[]", "[{box: {center: [0, 0, 1], size: [1, 1]}}]"),
+        "obstacles[0].box.size",
+        12,
+        "3 numbers has 2",
+    ),
+    "capsule of one end": (
+        task("[]", "[{capsule: {from: [0, 0, 1], radius: 1}}]"),
+        "obstacles[0].capsule.to",
+        12,
+        "missing other end",
+    ),
+    "capsule misspelt": (
+        task("[]", "[{capsule: {form: [0, 0, 1], to: [1, 1, 1], radius: 1}}]"),
+        "obstacles[0].capsule.form",
+        12,
+        "did you mean 'from'",
+    ),
+    "obstacle named twice": (
+        task(
+            "[]",
+            "[{name: a, sphere: {center: [0, 0, 1], radius: 1}}, {name: a, sphere: {center: [0, 0, 1], radius: 1}}]",
+        ),
+        "obstacles[1].name",
+        12,
+        "the name of obstacles[0]",
+    ),
     # what a later version brings
     "surface": (
         TASK + "surface: {sphere: {center: [0, 0, 0], radius: 1}}\n",
@@ -378,7 +432,6 @@ WRONG = {
         "not supported targets",
     ),
     "path": (TASK + "path: {csv: a.csv}\n", "path", 13, "not supported targets"),
-    "obstacle": (task("[]", "[{sphere: {center: [0, 0, 0], radius: 1}}]"), "obstacles", 12, "not supported"),
     "free base": (task("[0, 100, 0]", "[0, [0, 100], 0]"), "base.position[1]", 5, "free base not supported"),
     "free yaw": (task("yaw_deg: 90", "yaw_deg: [0, 90]"), "base.yaw_deg", 5, "free base not supported"),
 }

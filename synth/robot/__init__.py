@@ -2,9 +2,10 @@
 
 from synth.robot.arm import Arm, JointBranches
 from synth.robot.base import BasePose
+from synth.robot.clearance import ArmBody, turned
 from synth.robot.hardware import Interval, JointLimits, MalleableLink, RigidLink, Robot
 from synth.robot.kinematics import Kinematics, into_turn
-from synth.robot.link import LinkShape, arc_motion, chain_end
+from synth.robot.link import LinkShape, arc_motion, chain_end, chain_points
 from synth.robot.presets import PRESETS
 from synth.robot.reach import LinkReach
 from synth.robot.workspace import SurfaceMesh, Workspace
@@ -12,6 +13,7 @@ from synth.robot.workspace import SurfaceMesh, Workspace
 __all__ = [
     "PRESETS",
     "Arm",
+    "ArmBody",
     "BasePose",
     "Interval",
     "JointBranches",
@@ -26,5 +28,7 @@ __all__ = [
     "Workspace",
     "arc_motion",
     "chain_end",
+    "chain_points",
     "into_turn",
+    "turned",
 ]

@@ -70,10 +70,12 @@ class RigidLink:
     Attributes:
         d35: Distance from P3 to the end effector P5, m; an interval is chosen by the synthesis.
         d45: Distance from P4 to P5, m; likewise.
+        diameter: Its outer diameter, m, where it may touch obstacles or the malleable link.
     """
 
     d35: Interval
     d45: Interval
+    diameter: float = 0.0
 
     @property
     def is_fixed(self) -> bool:

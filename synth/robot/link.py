@@ -10,6 +10,8 @@ import numpy as np
 from synth.arrays import FloatArray, frozen
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import ArrayLike
 
 
@@ -56,12 +58,29 @@ def chain_end(curvatures: ArrayLike, lengths: ArrayLike) -> tuple[FloatArray, Fl
     Returns:
         The rotation matrix, shape (..., 3, 3), and the end's position, shape (..., 3), m.
     """
+    *_, (rotation, position) = _along(curvatures, lengths)
+    return rotation, position
+
+
+def chain_points(curvatures: ArrayLike, lengths: ArrayLike) -> FloatArray:
+    """Return the ends of all arcs of many chains, seen from their start, shape (..., m, 3), m.
+
+    Args:
+        curvatures: Curvatures of the m arcs of each chain, shape (..., m, 2), 1/m.
+        lengths: Lengths of the arcs, shape (..., m), m.
+    """
+    return np.stack([position for _, position in _along(curvatures, lengths)], axis=-2)
+
+
+def _along(curvatures: ArrayLike, lengths: ArrayLike) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """Yield rotation (..., 3, 3) and position (..., 3) after each arc of many chains."""
     rotations, displacements = arc_motion(curvatures, lengths)
     rotation, position = rotations[..., 0, :, :], displacements[..., 0, :]
+    yield rotation, position
     for arc in range(1, rotations.shape[-3]):
         position = position + np.einsum("...ij,...j->...i", rotation, displacements[..., arc, :])
         rotation = rotation @ rotations[..., arc, :, :]
-    return rotation, position
+        yield rotation, position
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,16 +151,23 @@ class LinkShape:
         count = max(2, int(np.ceil(self.length / spacing)) + 1)
         return self.point_at(np.linspace(0.0, self.length, count))
 
-    def lowest(self) -> float:
+    def lowest(self, beyond: float = 0.0) -> float:
         """Return the height of the lowest point of the centreline over its start, m.
 
         On an arc z is a sinusoid of the arc length: its extremes are at the ends of the arc or
         where the tangent is horizontal, so the minimum is exact.
+
+        Args:
+            beyond: Arc length from which on points count, m.
         """
         rotations, origins = self._arc_frames()
-        heights = [*origins[:, 2], self.end_frame()[1][2]]
-        for rotation, origin, k, length in zip(
-            rotations, origins, self.curvatures, self.lengths, strict=True
+        starts = np.concatenate([[0.0], np.cumsum(self.lengths)[:-1]])
+        heights = [
+            *origins[starts >= beyond, 2],
+            *self.point_at([min(beyond, self.length), self.length])[:, 2],
+        ]
+        for rotation, origin, k, start, length in zip(
+            rotations, origins, self.curvatures, starts, self.lengths, strict=True
         ):
             # The tangent's height along the arc: rotation[2] . (k/|k| sin(|k| s), cos(|k| s)).
             bend = float(np.hypot(k[0], k[1]))
@@ -150,7 +176,7 @@ class LinkShape:
             sideways = float(rotation[2, :2] @ k) / bend
             # Downhill turns uphill where sideways sin + up cos = 0 with a growing left-hand side.
             turn = float(np.arctan2(-rotation[2, 2], sideways)) % (2.0 * np.pi)
-            if turn < bend * length:
+            if beyond <= start + turn / bend < start + length:
                 heights.append(origin[2] + float(rotation[2] @ arc_motion(k, turn / bend)[1]))
         return float(min(heights))
 

@@ -16,10 +16,11 @@ Unknowns, in metres and radians but for the curvatures, which are in units of th
     rigid       s35, s45, and the circle of P5, where free     0 or 4
     joints      theta1, theta2 of each target                  2 n
     miss        vector from each target to P5                  3 n
+    overlap     depth in obstacles allowed at each target      n + 1, where planes are given
     worst       largest weighted (miss / tolerance)^2          1, for the minimax objective
 
 Objective: the weighted (miss / tolerance)^2, summed or worst, plus a small multiple of the bending
-energy, which chooses the gentlest among the shapes that miss alike.
+energy, which chooses the gentlest among the shapes that miss alike. Overlaps cost more than any miss.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ import numpy as np
 
 from synth.errors import SolverError
 from synth.robot import Arm, LinkShape
+from synth.synthesis.separation import COLUMN, PIECES, ROD
 from synth.task import Objective, Topology
 
 if TYPE_CHECKING:
@@ -41,6 +43,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from synth.arrays import FloatArray
+    from synth.synthesis.separation import Separation
     from synth.task import Task
 
 # The weight of r * (bending energy) against squared misses in units of the tolerance. It shifts a
@@ -48,9 +51,10 @@ if TYPE_CHECKING:
 _GENTLENESS = 1e-4
 # Curvature 1e-5 / m is straight; it keeps |k| differentiable at zero.
 _STRAIGHT = 1e-10
-# Heights of the link are bounded at this many points of each arc; what dips below the floor between
-# them is seen by the verification and answered by a higher margin.
-_HEIGHTS_PER_ARC = 4
+# The solver keeps this much clear, m, so that what it oversteps is not missing afterwards.
+_CLEARANCE = 2e-4
+# A millimetre of overlap costs as much as the last millimetre of a miss of this size, m.
+_NO_MISS_IS_LARGER = 0.3
 # With a smaller circle of the end effector, m, the second joint is not worth its name.
 _LEAST_RADIUS = 1e-3
 # `topology: general` keeps this far from the special categories: twice what still counts as one.
@@ -109,18 +113,30 @@ class _Block:
         return self.add(ca.SX.sym(name, *shape), lower, upper)
 
 
+@dataclass(frozen=True)
+class _Piece:
+    """A convex piece of the arm at joint 1 = 0: its ends, and what is within how far of their chord, m."""
+
+    ends: list[ca.SX]
+    thickness: ca.SX
+
+
 class SynthesisNlp:
     """The program of one task, built once and solved from many starts.
 
     Args:
         task: The task.
-        arcs: Number m of equal arcs of the link.
+        arcs: Number m of equal arcs of the link, a divisor of PIECES.
         stop: Asked once an iteration; when it says yes, the solver ends with what it has.
-        floor_margin: Height added to the floor, m.
+        planes: What keeps the arm apart from obstacles and from itself.
     """
 
     def __init__(
-        self, task: Task, arcs: int, stop: Callable[[], bool] | None = None, floor_margin: float = 0.0
+        self,
+        task: Task,
+        arcs: int,
+        stop: Callable[[], bool] | None = None,
+        planes: Sequence[Separation] = (),
     ) -> None:
         self._task = task
         self._arcs = arcs
@@ -130,8 +146,8 @@ class SynthesisNlp:
 
         curvature = x.unknown("curvature", (2, arcs), -1.0, 1.0)
         length = x.unknown("length", (1, 1), robot.link.length.lower, robot.link.length.upper)
-        self._floor = -math.inf if task.floor is None else task.floor + floor_margin
-        position, frame = self._link_end(curvature, length)
+        self._floor = -math.inf if task.floor is None else task.floor
+        pieces, position, frame = self._link(curvature, length)
         u, v, t = frame[:, 0], frame[:, 1], frame[:, 2]
         p3 = position - robot.tip_offset * u
         p4 = p3 + robot.d34 * u
@@ -157,7 +173,12 @@ class SynthesisNlp:
             ca.cos(theta1) * px - ca.sin(theta1) * py, ca.sin(theta1) * px + ca.cos(theta1) * py, pz
         )
         self._equal(reached - ca.DM(task.positions) - miss)
-        self._above_floor(pz)
+        self._above_floor(pz - 0.5 * robot.rigid_link.diameter)
+        self._overlaps = len(planes) and count + 1
+        overlap = x.unknown("overlap", (self._overlaps, 1), 0.0, math.inf)
+        tip = ca.horzcat(px, py, pz)
+        for plane in planes:
+            self._keep_apart(plane, pieces, tip, theta1, overlap)
 
         weighted = ca.sum2(miss**2) * ca.DM(task.weights / task.tolerances**2)
         if task.objective is Objective.MINIMAX:
@@ -166,7 +187,8 @@ class SynthesisNlp:
         else:
             misses = ca.sum1(weighted)
         bending_energy = ca.sumsqr(curvature) * length / (arcs * robot.link.min_bend_radius)
-        self._solver = self._build(misses + _GENTLENESS * bending_energy, stop)
+        steepest = 2.0 * _NO_MISS_IS_LARGER * float(np.max(task.weights / task.tolerances**2))
+        self._solver = self._build(misses + _GENTLENESS * bending_energy + steepest * ca.sum1(overlap), stop)
 
     def solve(self, start: Arm, joints: FloatArray) -> NlpAnswer:
         """Polish a shape.
@@ -223,20 +245,33 @@ class SynthesisNlp:
         if self._floor > -math.inf:
             self._g.add(height, self._floor, math.inf)
 
-    def _link_end(self, curvature: ca.SX, length: ca.SX) -> tuple[ca.SX, ca.SX]:
-        """Follow the arcs from P2 to the link's end, under the limits of bending and the floor."""
-        link = self._task.robot.link
-        position: ca.SX = ca.SX([0.0, 0.0, self._task.robot.d12])
+    def _link(self, curvature: ca.SX, length: ca.SX) -> tuple[dict[int, _Piece], ca.SX, ca.SX]:
+        """Follow the arcs from P2 to the link's end, under the limits of bending and the floor.
+
+        Returns:
+            The pieces of the tube, position and frame of the link's end.
+        """
+        robot = self._task.robot
+        link, radius = robot.link, 0.5 * robot.link.diameter
+        position: ca.SX = ca.SX([0.0, 0.0, robot.d12])
         frame: ca.SX = ca.SX.eye(3)
+        pieces = {COLUMN: _Piece([ca.SX.zeros(3), position], ca.SX(radius))}
         arc_length, total_bend = length / self._arcs, ca.SX(0.0)
+        parts = PIECES // self._arcs
         for arc in range(self._arcs):
             kx, ky = curvature[0, arc] * link.max_curvature, curvature[1, arc] * link.max_curvature
             bend = ca.sqrt(kx**2 + ky**2 + _STRAIGHT)
-            for part in range(1, _HEIGHTS_PER_ARC + 1):
-                turn = bend * arc_length * part / _HEIGHTS_PER_ARC
+            # A piece bulges from its chord by (1 - cos(k l / 2)) / k <= k l^2 / 8.
+            thickness = radius + bend * (arc_length / parts) ** 2 / 8.0
+            before = position
+            for part in range(1, parts + 1):
+                turn = bend * arc_length * part / parts
                 sine, versine = ca.sin(turn) / bend, 2.0 * (ca.sin(0.5 * turn) / bend) ** 2
                 point = position + frame @ ca.vertcat(kx * versine, ky * versine, sine)
-                self._above_floor(point[2])
+                self._above_floor(point[2] - thickness)
+                # The link's very start is in its mount: it cannot move, and need not.
+                pieces[len(pieces)] = _Piece([before, point] if len(pieces) > 1 else [point], thickness)
+                before = point
             turned = ca.vertcat(
                 ca.horzcat(1.0 - kx**2 * versine, -kx * ky * versine, kx * sine),
                 ca.horzcat(-kx * ky * versine, 1.0 - ky**2 * versine, ky * sine),
@@ -247,7 +282,35 @@ class SynthesisNlp:
             total_bend += turn
         if link.max_total_bend < math.inf:
             self._g.add(total_bend, -math.inf, link.max_total_bend)
-        return position, frame
+        return pieces, position, frame
+
+    def _keep_apart(
+        self, plane: Separation, pieces: dict[int, _Piece], tip: ca.SX, theta1: ca.SX, overlap: ca.SX
+    ) -> None:
+        """Keep a piece on its side of a plane; `tip` is P5 at joint 1 = 0 for each target, (n, 3)."""
+        normal = ca.DM(plane.normal)
+        one = pieces[plane.piece] if plane.piece != ROD else self._rod(plane, pieces[PIECES], tip)
+        thickness, allowed = one.thickness, overlap[plane.target]  # ANY_TARGET is the last
+        if plane.other is None:
+            c, s = ca.cos(theta1[plane.target]), ca.sin(theta1[plane.target])
+            # The direction turned back is the same as the piece turned forward.
+            normal = ca.vertcat(c * normal[0] + s * normal[1], c * normal[1] - s * normal[0], normal[2])
+            beyond = [ca.SX(plane.offset)]
+        else:
+            beyond = [ca.dot(normal, end) for end in pieces[plane.other].ends]
+            thickness = thickness + pieces[plane.other].thickness
+        for end in one.ends:
+            for other in beyond:
+                self._g.add(ca.dot(normal, end) - other - thickness + allowed, _CLEARANCE, math.inf)
+
+    def _rod(self, plane: Separation, last: _Piece, tip: ca.SX) -> _Piece:
+        """Return the rigid link; where it is kept apart from the tube, without the joint's diameter."""
+        robot = self._task.robot
+        start, end = last.ends[-1], tip[plane.target, :].T
+        if plane.other is not None:
+            along = end - start
+            start = start + robot.link.diameter / ca.norm_2(along) * along
+        return _Piece([start, end], ca.SX(0.5 * robot.rigid_link.diameter))
 
     def _end_effector_circle(self) -> tuple[ca.SX, ca.SX]:
         """Return offset along axis 2 and radius of P5's circle; free rigid links get s35 and s45."""
@@ -298,6 +361,7 @@ class SynthesisNlp:
             [] if task.robot.rigid_link.is_fixed else self._rigid_link(arm),
             joints.T.ravel(),
             misses.T.ravel(),
+            np.zeros(self._overlaps),
         ]
         if task.objective is Objective.MINIMAX:
             worst = np.max(task.weights * (np.linalg.norm(misses, axis=1) / task.tolerances) ** 2)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import FloatArray, frozen
-from synth.robot import Arm, BasePose, Kinematics, LinkShape, chain_end
+from synth.robot import Arm, BasePose, Kinematics, LinkShape, chain_end, chain_points
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -84,6 +84,14 @@ class Population:
         lengths = np.repeat(self.length[..., None] / ARCS, ARCS, axis=-1)
         frame, position = chain_end(self.curvatures, lengths)
         return frame, position + np.array([0.0, 0.0, self.robot.d12])
+
+    @cached_property
+    def centreline(self) -> FloatArray:
+        """Points of the centrelines in the base frame, four on each arc, shape (..., 4 ARCS, 3), m."""
+        pieces = 4
+        curvatures = np.repeat(self.curvatures, pieces, axis=-2)
+        lengths = np.repeat(self.length[..., None] / (pieces * ARCS), pieces * ARCS, axis=-1)
+        return chain_points(curvatures, lengths) + np.array([0.0, 0.0, self.robot.d12])
 
     @cached_property
     def kinematics(self) -> Kinematics:

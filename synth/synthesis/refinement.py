@@ -16,7 +16,7 @@ from synth.task import Topology
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
-    from synth.robot import Interval, JointLimits
+    from synth.robot import Interval
     from synth.task import Task
 
 _ITERATIONS = 14
@@ -54,16 +54,16 @@ def refine(task: Task, population: Population, theta2: FloatArray) -> Refined:
     Returns:
         The improved shapes.
     """
-    points, limits = task.positions, task.robot.joint_limits
+    limits = task.robot.joint_limits
     weights = relative_weights(task)
-    joints = _with_theta1(population, points, theta2, limits)
+    joints = with_theta1(task, population, theta2)
     cost, damping = _cost(task, population, joints, weights), np.full(len(theta2), 1e-3)
     for _ in range(_ITERATIONS):
         step, follow = _step(task, population, joints, weights, damping)
         moved = Population(task.robot, into_limits(task.robot, population.unknowns + step))
         # By how much the joints follow is only known to first order: theta1 is then set right.
         theta2 = np.clip(joints[..., 1] + follow, limits.second.lower, limits.second.upper)
-        moved_joints = _with_theta1(moved, points, theta2, limits)
+        moved_joints = with_theta1(task, moved, theta2)
         moved_cost = _cost(task, moved, moved_joints, weights)
         better = moved_cost < cost
         population = Population(task.robot, np.where(better[:, None], moved.unknowns, population.unknowns))
@@ -98,10 +98,10 @@ def category_offsets(task: Task, frame: FloatArray, position: FloatArray) -> Flo
             return np.zeros((*position.shape[:-1], 2))
 
 
-def _with_theta1(
-    population: Population, points: FloatArray, theta2: FloatArray, limits: JointLimits
-) -> FloatArray:
-    theta1 = population.kinematics.each_target().best_theta1(theta2, points, limits.base)
+def with_theta1(task: Task, population: Population, theta2: FloatArray) -> FloatArray:
+    """Return joint angles, shape (N, n, 2), with joint 1 at its best for angles of joint 2, (N, n), rad."""
+    kinematics = population.kinematics.each_target()
+    theta1 = kinematics.best_theta1(theta2, task.positions, task.robot.joint_limits.base)
     return np.stack([theta1, theta2], axis=-1)
 
 

@@ -15,7 +15,8 @@ import numpy as np
 from synth.robot import Arm, into_turn
 from synth.synthesis.exact_starts import exact_designs, nearest_to_designs
 from synth.synthesis.population import Population
-from synth.synthesis.refinement import Refined, category_offsets, refine, relative_weights
+from synth.synthesis.refinement import Refined, category_offsets, refine, relative_weights, with_theta1
+from synth.synthesis.separation import overlaps
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -95,6 +96,8 @@ def _starts(task: Task, rng: np.random.Generator) -> Iterator[Start]:
         population = population.take(_promising(population, cost, shortlist, designs))
         theta2, misses = limited_misses(task, population)
         cost = _costs(task, misses) + _category_cost(task, population)
+        if task.obstacles:
+            cost += _overlap_cost(task, population, with_theta1(task, population, theta2.T))
         best = _promising(population, cost, count, designs)
         refined = refine(task, population.take(best), theta2[:, best].T)
         yield from itertools.islice(_distinct(task, refined), _STARTS_PER_STEP)
@@ -117,9 +120,12 @@ def _distinct(task: Task, refined: Refined) -> Iterator[Start]:
     """Yield starts in the order of their misses, those aside that are nearly one yielded before."""
     population = refined.population
     frame, position = population.end
+    cost = np.maximum(refined.cost, _SETTLED)
+    if task.obstacles:
+        cost = cost + _overlap_cost(task, population, refined.joints)
     poses = np.hstack([position, _ARM_LENGTH * frame[:, :, 0]])
     taken = np.empty((0, poses.shape[1]))
-    for index in np.lexsort([population.bending, np.maximum(refined.cost, _SETTLED)]):
+    for index in np.lexsort([population.bending, cost]):
         if np.all(np.linalg.norm(taken - poses[index], axis=1) > _DISTINCT):
             taken = np.vstack([taken, poses[index]])
             yield Start(population.arm(index, task.base), refined.joints[index])
@@ -251,3 +257,8 @@ def _costs(task: Task, misses: FloatArray) -> FloatArray:
 def _category_cost(task: Task, population: Population) -> FloatArray:
     """Return the squared distance from the category that the task asks for, m^2."""
     return np.asarray(np.sum(category_offsets(task, *population.end) ** 2, axis=-1))
+
+
+def _overlap_cost(task: Task, population: Population, joints: FloatArray) -> FloatArray:
+    """Return the mean squared depth in obstacles, m^2, for joint angles of shape (N, n, 2)."""
+    return np.asarray(np.mean(overlaps(task, population, joints) ** 2, axis=-1))

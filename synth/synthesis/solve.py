@@ -16,15 +16,17 @@ from synth.synthesis.impossibility import why_impossible
 from synth.synthesis.nlp import SynthesisNlp
 from synth.synthesis.population import ARCS
 from synth.synthesis.screening import Start, starts
+from synth.synthesis.separation import separations
 from synth.synthesis.solution import Design, Solution, Status, Timing
-from synth.synthesis.verification import Violation, verify
+from synth.synthesis.verification import verify
 from synth.task import Objective
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from synth.arrays import FloatArray
     from synth.robot import Arm
+    from synth.synthesis.separation import Separation
     from synth.task import Task
 
 _STARTS_AT_MOST = 48
@@ -39,7 +41,11 @@ _EXACTLY = 2e-3
 # Two shapes nearer than this all along, m, are one: a hand places the link to 9.6 +- 2.1 mm (Ranne,
 # Clark and Rojas, 2022).
 _SAME_SHAPE = 0.010
-_FLOOR_REPAIRS = 4
+# How often planes between the arm and obstacles are taken anew where the solver ended.
+_PLANES_ANEW = 5
+_GAINED = 0.9  # of the objective before: the least gain for which to go on
+_REASONS = 3  # of a kind that are told
+_CLASHES = ("obstacle", "itself")
 
 
 @dataclass(frozen=True)
@@ -124,6 +130,7 @@ class _Search:
     starts: int = 0
     starts_found: int = 0  # since a shape was found, that start included
     interrupted: bool = False
+    _free_nlp: SynthesisNlp | None = None  # of no planes
 
     def __post_init__(self) -> None:
         self._impossible = why_impossible(self.task)
@@ -131,14 +138,15 @@ class _Search:
 
     def run(self) -> None:
         """Polish start points until enough is found, or the time is up."""
-        nlp: SynthesisNlp | None = None
         for start in self._start_points():
             if self._out_of_time():
-                if not self.designs:  # a start that was not polished is better than nothing
+                # A start that was not polished is better than nothing.
+                if not self.designs:
                     self._keep(start.arm, start.joints)
-                return
-            nlp = nlp or self._nlp(floor_margin=0.0)
-            self._polish(nlp, start)
+                if self.designs or len(self.blocked) >= _STARTS_WHEN_IMPOSSIBLE:
+                    return
+                continue
+            self._polish(start)
             self.starts += 1
             self.starts_found += self._found()
             self._report()
@@ -177,36 +185,45 @@ class _Search:
             return status, _why_not_exact(self.task)
         # As far as the shape tells that breaks the fewest limits.
         nearest = min((d.verification.violations for d in self.blocked), key=len, default=())
-        blocking = (violation.sentence for violation in nearest)
+        blocking = [violation.sentence for violation in nearest[:_REASONS]]
         return status, ("no shape was found that the hardware can take", *blocking)
 
-    def _polish(self, nlp: SynthesisNlp, start: Start) -> None:
-        """Solve from one start; raise the floor a little where the link dips below it."""
-        arm, joints, margin = start.arm, start.joints, 0.0
-        for _ in range(_FLOOR_REPAIRS):
-            try:
-                with self.clock.on("solving"):
-                    answer = nlp.solve(arm, joints)
-            except SolverError as error:
-                self.breakdowns.append(str(error))
-                return
+    def _polish(self, start: Start) -> None:
+        """Solve from one start; where something is in the way, take the planes before it anew."""
+        arm, joints, itself = start.arm, start.joints, False
+        best = math.inf
+        for _ in range(_PLANES_ANEW):
+            with self.clock.on("solving"):
+                planes = separations(self.task, arm, joints, itself=itself)
+                try:
+                    answer = self._nlp(planes).solve(arm, joints)
+                except SolverError as error:
+                    self.breakdowns.append(str(error))
+                    return
             arm, joints = answer.arm, answer.joints
-            violations = self._keep(arm, joints)
-            if [violation.limit for violation in violations] != ["floor: link"]:
+            design = self._keep(arm, joints)
+            clashes = [v for v in design.verification.violations if v.limit.startswith(_CLASHES)]
+            itself = itself or any(clash.limit == "itself" for clash in clashes)
+            # Other planes may give way: as long as they do, or as something is in the way.
+            objective = _rank(self.task, design)[1]
+            done = not planes or objective > _GAINED * best or design.verification.found
+            best = min(best, objective)
+            if (done and not clashes) or self._out_of_time():
                 return
-            margin += 1.5 * violations[0].amount
-            nlp = self._nlp(margin)
 
-    def _nlp(self, floor_margin: float) -> SynthesisNlp:
-        with self.clock.on("solving"):
-            return SynthesisNlp(self.task, ARCS, self._out_of_time, floor_margin)
+    def _nlp(self, planes: Sequence[Separation]) -> SynthesisNlp:
+        if planes:
+            return SynthesisNlp(self.task, ARCS, self._out_of_time, planes)
+        if self._free_nlp is None:
+            self._free_nlp = SynthesisNlp(self.task, ARCS, self._out_of_time)
+        return self._free_nlp
 
-    def _keep(self, arm: Arm, joints: FloatArray) -> tuple[Violation, ...]:
-        """Check a shape, keep it where it belongs, and return the limits it breaks."""
+    def _keep(self, arm: Arm, joints: FloatArray) -> Design:
+        """Check a shape, keep it where it belongs, and return it."""
         with self.clock.on("verifying"):
             design = Design(arm, verify(self.task, arm, joints))
         (self.designs if design.verification.possible else self.blocked).append(design)
-        return design.verification.violations
+        return design
 
     def _found(self) -> bool:
         return any(design.verification.found for design in self.designs)

@@ -12,9 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import FloatArray, frozen
+from synth.robot import ArmBody
 from synth.task import Topology
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from synth.robot import Arm, Interval
     from synth.task import Task
 
@@ -49,6 +52,8 @@ class Verification:
         within_tolerance: Whether each target is reached, shape (n,).
         gamma_residuals: |Gamma(P5)| over the sum of its terms' magnitudes, shape (n,): that P5 lies
             on the published surface, too; about 1e-12.
+        clearances: How far the arm at least keeps from the obstacles at each target, shape (n,), m;
+            no more than 0.1 m is looked for, and without obstacles it is infinite.
         violations: Limits that the shape breaks; empty for a shape that the hardware can take.
     """
 
@@ -57,6 +62,7 @@ class Verification:
     misses: FloatArray
     within_tolerance: tuple[bool, ...]
     gamma_residuals: FloatArray
+    clearances: FloatArray
     violations: tuple[Violation, ...]
 
     @property
@@ -76,36 +82,79 @@ def verify(task: Task, arm: Arm, joints: FloatArray | None = None) -> Verificati
     Args:
         task: The task.
         arm: The robot in the shape.
-        joints: Joint angles to consider beside the closest ones, shape (n, 2), rad: near the floor
-            the closest point of the workspace may be below it.
+        joints: Joint angles to consider beside the closest ones and the branches of the inverse
+            kinematics, shape (n, 2), rad: at the closest point the arm may be in the way of something.
 
     Returns:
         The misses by forward kinematics and every limit that is broken.
     """
     targets = np.array([target.position for target in task.targets])
     closest, _ = arm.closest_joints(targets)
-    candidates = closest[None] if joints is None else np.stack([closest, joints])
+    branches = arm.inverse_kinematics(targets)
+    given = [] if joints is None else [joints]
+    candidates = np.stack([closest, *given, *np.moveaxis(branches.joints, -2, 0)])
     points = arm.forward_kinematics(candidates[..., 0], candidates[..., 1])
     misses = np.linalg.norm(points - targets, axis=-1)
+    misses[-2:][np.isinf(branches.miss.T)] = np.inf  # beyond the joint limits, or no branch at all
     floor = -math.inf if task.floor is None else task.floor
-    sunk = arm.base.to_base(points)[..., 2] < floor - _LENGTH_SLACK
-    chosen = np.argmin(np.where(sunk, np.inf, misses), axis=0), np.arange(len(targets))
-    reached, misses, sunk = points[chosen], misses[chosen], sunk[chosen]
-    within = (misses <= task.tolerances) & ~sunk
+    room = _Room.of(task, arm, candidates)
+    lowest = arm.base.to_base(points)[..., 2] - ArmBody(arm).rod_radius
+    blocked = (lowest < floor - _LENGTH_SLACK) | (room.least < -_LENGTH_SLACK)
+    best = np.argmin(np.where(blocked, np.inf, misses), axis=0)
+    chosen = best, np.arange(len(targets))
+    reached, misses = points[chosen], misses[chosen]
+    within = (misses <= task.tolerances) & ~blocked[chosen]
+    room = room.chosen(best)
     return Verification(
         joints=frozen(candidates[chosen]),
         reached=frozen(reached),
         misses=frozen(misses),
         within_tolerance=tuple(bool(value) for value in within),
         gamma_residuals=frozen(arm.surface.residual(arm.base.to_base(reached))),
+        clearances=frozen(room.from_obstacles.min(axis=(-2, -1), initial=math.inf)),
         violations=(
             *_length_violations(arm),
             *_bend_violations(arm),
             *_joint_violations(arm, candidates[chosen]),
             *_floor_violations(task, arm, arm.base.to_base(reached)[:, 2]),
             *_topology_violations(task, arm),
+            *_obstacle_violations(task, room),
+            *_self_violations(task, room),
         ),
     )
+
+
+@dataclass(frozen=True)
+class _Room:
+    """What the arm keeps clear of, as lower bounds of distances, m; see `ArmBody`.
+
+    Attributes:
+        from_obstacles: Of tube and rod from each of the m obstacles, shape (..., n, m, 2).
+        rod_from_tube: Of the rigid link from the malleable one, shape (..., n).
+        tube_from_itself: Of the malleable link from itself and from the base.
+    """
+
+    from_obstacles: FloatArray
+    rod_from_tube: FloatArray
+    tube_from_itself: float
+
+    @classmethod
+    def of(cls, task: Task, arm: Arm, candidates: FloatArray) -> _Room:
+        """Return the room about an arm at joint angles, shape (..., n, 2), rad."""
+        body, joints, shape = ArmBody(arm), candidates.reshape(-1, 2), candidates.shape[:-1]
+        from_obstacles = body.from_obstacles(joints, task.solids).reshape(*shape, -1, 2)
+        return cls(from_obstacles, body.rod_from_tube(joints[:, 1]).reshape(shape), body.tube_from_itself())
+
+    @property
+    def least(self) -> FloatArray:
+        """What joint angles can change, the least of it, shape (..., n), m."""
+        from_obstacles = self.from_obstacles.min(axis=(-2, -1), initial=math.inf)
+        return np.asarray(np.minimum(from_obstacles, self.rod_from_tube))
+
+    def chosen(self, best: NDArray[np.intp]) -> _Room:
+        """Return the room at one candidate for each target, shape (n,)."""
+        index = best, np.arange(len(best))
+        return _Room(self.from_obstacles[index], self.rod_from_tube[index], self.tube_from_itself)
 
 
 def _exceeds(limit: str, value: float, bound: float, slack: float, sentence: str) -> list[Violation]:
@@ -169,10 +218,11 @@ def _joint_violations(arm: Arm, joints: FloatArray) -> list[Violation]:
 def _floor_violations(task: Task, arm: Arm, end_effector: FloatArray) -> list[Violation]:
     if task.floor is None:
         return []
+    body = ArmBody(arm)
     heights = {
-        "link": arm.robot.d12 + arm.shape.lowest(),
+        "link": body.lowest(),
         "second joint": float(arm.axis_points[2:, 2].min()),
-        "end effector": float(np.min(end_effector, initial=math.inf)),
+        "end effector": float(np.min(end_effector, initial=math.inf)) - body.rod_radius,
     }
     violations = []
     for part, height in heights.items():
@@ -201,3 +251,32 @@ def _topology_violations(task: Task, arm: Arm) -> list[Violation]:
     return _exceeds(
         "topology", amount, 0.0, slack, f"the shape is not {task.topology.value}, which the task asks for"
     )
+
+
+def _obstacle_violations(task: Task, room: _Room) -> list[Violation]:
+    """Check that tube and rod keep clear of the obstacles at each target: one violation for each."""
+    violations = []
+    for target, clearances in zip(task.targets, room.from_obstacles, strict=True):
+        if not clearances.size:
+            return []
+        worst, part = np.unravel_index(np.argmin(clearances), clearances.shape)
+        obstacle, depth = task.obstacles[worst].name, -float(clearances[worst, part])
+        violations += _exceeds(
+            f"obstacle: {obstacle}", depth, 0.0, _LENGTH_SLACK,
+            f"at {target.name} the {('malleable', 'rigid')[part]} link would be {1e3 * depth:.2f} mm "
+            f"inside {obstacle}",
+        )  # fmt: skip
+    return violations
+
+
+def _self_violations(task: Task, room: _Room) -> list[Violation]:
+    violations = _exceeds(
+        "itself", -room.tube_from_itself, 0.0, _LENGTH_SLACK,
+        f"the malleable link would be {-1e3 * room.tube_from_itself:.2f} mm inside itself or the base",
+    )  # fmt: skip
+    for target, clearance in zip(task.targets, room.rod_from_tube.tolist(), strict=True):
+        violations += _exceeds(
+            "itself", -clearance, 0.0, _LENGTH_SLACK,
+            f"at {target.name} the rigid link would be {-1e3 * clearance:.2f} mm inside the malleable one",
+        )  # fmt: skip
+    return violations

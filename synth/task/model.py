@@ -12,6 +12,7 @@ from synth.arrays import FloatArray, frozen
 from synth.robot import BasePose
 
 if TYPE_CHECKING:
+    from synth.geometry import Solid
     from synth.robot import Robot
 
 DEFAULT_TOLERANCE = 1e-3  # m: twice the error of the motion capture that measured the prototype
@@ -55,6 +56,19 @@ class PointTarget:
 
 
 @dataclass(frozen=True, eq=False)
+class Obstacle:
+    """A solid that link, rigid link and end effector keep clear of.
+
+    Attributes:
+        name: How the result speaks of it.
+        solid: Where it is, in the task frame, m.
+    """
+
+    name: str
+    solid: Solid
+
+
+@dataclass(frozen=True, eq=False)
 class Task:
     """A synthesis task: reach the targets with one shape of the link.
 
@@ -67,6 +81,7 @@ class Task:
             where there is no floor.
         topology: Kind of shape asked for.
         objective: Norm of the misses that is made small.
+        obstacles: What the robot keeps clear of at every target.
     """
 
     name: str
@@ -76,6 +91,7 @@ class Task:
     floor: float | None = 0.0
     topology: Topology = Topology.ANY
     objective: Objective = Objective.LEAST_SQUARES
+    obstacles: tuple[Obstacle, ...] = ()
 
     @property
     def positions(self) -> FloatArray:
@@ -91,3 +107,9 @@ class Task:
     def weights(self) -> FloatArray:
         """Weights of all targets, shape (n,)."""
         return np.array([target.weight for target in self.targets])
+
+    @property
+    def solids(self) -> tuple[Solid, ...]:
+        """The obstacles in the base frame."""
+        base = self.base
+        return tuple(obstacle.solid.seen_from(base.position, base.yaw) for obstacle in self.obstacles)

@@ -12,16 +12,29 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.errors import InputError
+from synth.geometry import Box, Capsule
 from synth.robot import PRESETS, BasePose, Interval, JointLimits, MalleableLink, RigidLink, Robot
 from synth.task.document import Document
-from synth.task.model import DEFAULT_TOLERANCE, PointTarget, Task
-from synth.task.schema import RobotEntry, RobotFile, TargetEntry, TaskFile, ends
+from synth.task.model import DEFAULT_TOLERANCE, Obstacle, PointTarget, Task
+from synth.task.schema import (
+    BoxEntry,
+    CapsuleEntry,
+    ObstacleEntry,
+    RobotEntry,
+    RobotFile,
+    SphereEntry,
+    TargetEntry,
+    TaskFile,
+    ends,
+)
 from synth.task.wording import did_you_mean, validate
 from synth.task.yaml_text import read_file, read_text
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Mapping
+
+    from synth.geometry import Solid
 
 PER_METRE = {"mm": 1000.0, "cm": 100.0, "m": 1.0}  # to divide by: 455 / 1000 is 0.455 exactly
 _ROBOT_FILES = {".yaml", ".yml", ".json"}
@@ -97,7 +110,8 @@ def _task(document: Document, directory: Path, name: str) -> Task:
     content = document.value if isinstance(document.value, dict) else {}
     reference = content.get("robot")
     robot = named_robot(document, reference, directory) if isinstance(reference, str) else None
-    _report_names_given_twice(document, content.get("targets"))
+    for key, kind in (("targets", "target"), ("obstacles", "obstacle")):
+        _report_names_given_twice(document, key, kind, content.get(key))
     file = validate(document, TaskFile)
     if file is None or document.is_wrong:
         raise document.error()
@@ -110,12 +124,17 @@ def _task(document: Document, directory: Path, name: str) -> Task:
         name=file.name or name,
         robot=robot,
         targets=tuple(
-            _to_target(entry, per_metre, _default_name(index)) for index, entry in enumerate(file.targets)
+            _to_target(entry, per_metre, _default_name("target", index))
+            for index, entry in enumerate(file.targets)
         ),
         base=BasePose(np.array(file.base.position) / per_metre, math.radians(file.base.yaw_deg)),
         floor=None if file.floor is None else file.floor / per_metre,
         topology=file.topology,
         objective=file.objective,
+        obstacles=tuple(
+            _to_obstacle(entry, per_metre, _default_name("obstacle", index))
+            for index, entry in enumerate(file.obstacles)
+        ),
     )
 
 
@@ -141,19 +160,19 @@ def named_robot(document: Document, reference: str, directory: Path) -> Robot | 
     return None
 
 
-def _report_names_given_twice(document: Document, targets: object) -> None:
+def _report_names_given_twice(document: Document, key: str, kind: str, entries: object) -> None:
     first: dict[str, int] = {}
-    for index, target in enumerate(targets if isinstance(targets, list) else []):
-        name = target.get("name", _default_name(index)) if isinstance(target, dict) else None
+    for index, entry in enumerate(entries if isinstance(entries, list) else []):
+        name = entry.get("name", _default_name(kind, index)) if isinstance(entry, dict) else None
         if not isinstance(name, str):
             continue
         if first.setdefault(name, index) != index:
-            message = f"{name[:40]!r} is the name of targets[{first[name]}] already"
-            document.report(("targets", index, "name"), message)
+            message = f"{name[:40]!r} is the name of {key}[{first[name]}] already"
+            document.report((key, index, "name"), message)
 
 
-def _default_name(index: int) -> str:
-    return f"target {index + 1}"
+def _default_name(kind: str, index: int) -> str:
+    return f"{kind} {index + 1}"
 
 
 def _to_target(entry: TargetEntry, per_metre: float, name: str) -> PointTarget:
@@ -163,6 +182,18 @@ def _to_target(entry: TargetEntry, per_metre: float, name: str) -> PointTarget:
         tolerance=DEFAULT_TOLERANCE if entry.tolerance is None else entry.tolerance / per_metre,
         weight=entry.weight,
     )
+
+
+def _to_obstacle(entry: ObstacleEntry, per_metre: float, name: str) -> Obstacle:
+    solid: Solid
+    match entry.solid:
+        case SphereEntry(center=center, radius=radius):
+            solid = Capsule.sphere(np.array(center) / per_metre, radius / per_metre)
+        case BoxEntry(center=center, size=size, yaw_deg=yaw):
+            solid = Box(np.array(center) / per_metre, np.array(size) / per_metre, math.radians(yaw))
+        case CapsuleEntry(from_=start, to=end, radius=radius):
+            solid = Capsule(np.array([start, end]) / per_metre, radius / per_metre)
+    return Obstacle(entry.name or name, solid)
 
 
 def to_robot(entry: RobotEntry, per_metre: float, name: str) -> Robot:
@@ -182,7 +213,9 @@ def to_robot(entry: RobotEntry, per_metre: float, name: str) -> Robot:
         d34=entry.d34 / per_metre,
         tip_offset=tip_offset / per_metre,
         rigid_link=RigidLink(
-            _interval(entry.rigid_link.d35, per_metre), _interval(entry.rigid_link.d45, per_metre)
+            _interval(entry.rigid_link.d35, per_metre),
+            _interval(entry.rigid_link.d45, per_metre),
+            (entry.rigid_link.diameter or 0.0) / per_metre,
         ),
         joint_limits=JointLimits(
             base=full.base if limits.base is None else _radians(limits.base),

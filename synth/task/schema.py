@@ -16,6 +16,7 @@ from pydantic import (
     Tag,
     ValidationInfo,
     field_validator,
+    model_validator,
 )
 
 from synth.task.model import Objective, Topology
@@ -88,6 +89,7 @@ class RigidLinkEntry(Strict):
 
     d35: PositiveOrRange = Field(description="distance from P3 to the end effector P5")
     d45: PositiveOrRange = Field(description="distance from P4 to the end effector P5")
+    diameter: Positive = Field(default_factory=absent, description="outer diameter; 0 if absent")
 
 
 class JointLimitsEntry(Strict):
@@ -156,6 +158,54 @@ class TargetEntry(Strict):
     weight: Positive = Field(default=1.0, description="factor of its squared miss")
 
 
+class SphereEntry(Strict):
+    """A ball."""
+
+    center: Position = Field(description="[x, y, z] in the task frame")
+    radius: Positive = Field(description="its radius")
+
+
+class BoxEntry(Strict):
+    """A box with vertical edges."""
+
+    center: Position = Field(description="[x, y, z] in the task frame")
+    size: Annotated[list[Positive], Field(min_length=3, max_length=3)] = Field(
+        description="its extent along its own x, y and z axes"
+    )
+    yaw_deg: Angle = Field(default=0.0, description="rotation of these axes about the vertical")
+
+
+class CapsuleEntry(Strict):
+    """All points within a radius of a segment."""
+
+    from_: Position = Field(alias="from", description="one end of the segment")
+    to: Position = Field(description="the other end")
+    radius: Positive = Field(description="its radius")
+
+
+class ObstacleEntry(Strict):
+    """A solid to keep clear of: one of sphere, box and capsule."""
+
+    name: Name = Field(default_factory=absent, description="how the result speaks of it")
+    sphere: SphereEntry = Field(default_factory=absent, description="a ball: center, radius")
+    box: BoxEntry = Field(default_factory=absent, description="a box: center, size, yaw_deg")
+    capsule: CapsuleEntry = Field(default_factory=absent, description="a thick segment: from, to, radius")
+
+    @property
+    def solid(self) -> SphereEntry | BoxEntry | CapsuleEntry:
+        """The one that is given."""
+        return next(solid for solid in (self.sphere, self.box, self.capsule) if solid is not None)
+
+    @model_validator(mode="after")
+    def _one_solid(self) -> ObstacleEntry:
+        """Ask for exactly one solid."""
+        given = [kind for kind in ("sphere", "box", "capsule") if getattr(self, kind) is not None]
+        if len(given) != 1:
+            wrong = f"has {' and '.join(given)}" if given else "has no solid"
+            raise ValueError(f"{wrong}, but is one of sphere, box and capsule")
+        return self
+
+
 class TaskFile(Strict):
     """A task file."""
 
@@ -175,7 +225,7 @@ class TaskFile(Strict):
         default=Objective.LEAST_SQUARES, description="norm of miss over tolerance"
     )
     targets: Annotated[list[TargetEntry], Field(min_length=1)] = Field(description="the points to reach")
-    obstacles: Annotated[list[Any], Field(max_length=0)] = Field(default=[], description="none so far")
+    obstacles: list[ObstacleEntry] = Field(default=[], description="solids to keep clear of")
 
 
 def task_schema() -> dict[str, Any]:

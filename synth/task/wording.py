@@ -49,7 +49,6 @@ _SENTENCES_AT: dict[KeyPath, dict[str, str]] = {
         "must be 1, the only version of this format, but is {value}",
     ),
     ("targets",): {"too_short": "must hold one target at least, but is an empty list"},
-    ("obstacles",): {"too_long": f"obstacles are {_LATER}leave the list empty"},
 }
 
 
@@ -99,7 +98,7 @@ def _fields(schema: type[BaseModel], path: Iterable[str | int]) -> dict[str, Any
     for part in path:
         if isinstance(part, str) and part in schema.model_fields:
             schema = _model_in(schema.model_fields[part].annotation) or schema
-    return dict(schema.model_fields)
+    return {field.alias or name: field for name, field in schema.model_fields.items()}
 
 
 def _model_in(annotation: Any) -> type[BaseModel] | None:

@@ -1,0 +1,129 @@
+"""Convex solids that a robot keeps clear of: boxes, capsules and, as capsules of no length, spheres.
+
+Each knows three things: the signed distance of points, the outward direction there, and its support
+function. With them a solid is kept apart from a convex piece of a robot by a plane: outward direction n
+and offset max over the solid of n . x leave the whole solid on one side.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.arrays import FloatArray, frozen
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+_UP = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True, eq=False)
+class Capsule:
+    """All points within a radius of a segment.
+
+    Attributes:
+        ends: Ends of the segment, shape (2, 3), m; for a sphere both are its centre.
+        radius: The radius, m.
+    """
+
+    ends: FloatArray
+    radius: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "ends", frozen(self.ends))
+
+    @classmethod
+    def sphere(cls, centre: ArrayLike, radius: float) -> Capsule:
+        """Return a sphere."""
+        return cls(np.array([centre, centre], dtype=np.float64), radius)
+
+    def distance(self, points: FloatArray) -> FloatArray:
+        """Return the signed distance of points, shape (..., 3), m; shape (...), negative inside."""
+        return np.asarray(np.linalg.norm(self._from_segment(points), axis=-1) - self.radius)
+
+    def outward(self, points: FloatArray) -> FloatArray:
+        """Return the direction in which the distance grows, shape (..., 3), without unit."""
+        away = self._from_segment(points)
+        length = np.linalg.norm(away, axis=-1, keepdims=True)
+        return np.where(length > 0.0, away / np.where(length > 0.0, length, 1.0), self._across())
+
+    def support(self, directions: FloatArray) -> FloatArray:
+        """Return the largest n . x over the solid for unit vectors n, shape (..., 3); shape (...), m."""
+        return np.asarray((directions @ self.ends.T).max(axis=-1) + self.radius)
+
+    def seen_from(self, position: FloatArray, yaw: float) -> Capsule:
+        """Return the same solid in a frame at `position`, shape (3,), m, turned by `yaw`, rad, about z."""
+        return Capsule((self.ends - position) @ _about_z(yaw), self.radius)
+
+    def _from_segment(self, points: FloatArray) -> FloatArray:
+        start, along = self.ends[0], self.ends[1] - self.ends[0]
+        share = np.clip((points - start) @ along / max(along @ along, 1e-300), 0.0, 1.0)
+        return np.asarray(points - start - share[..., None] * along)
+
+    def _across(self) -> FloatArray:
+        """Return a direction across the segment, for points on it."""
+        along = self.ends[1] - self.ends[0]
+        if not along.any():
+            return _UP
+        across = np.cross(along, np.eye(3)[np.argmin(np.abs(along))])
+        return np.asarray(across / np.linalg.norm(across))
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """A box with vertical edges.
+
+    Attributes:
+        centre: Its centre, shape (3,), m.
+        size: Its extent along its own x, y and z axes, shape (3,), m.
+        yaw: Rotation of these axes about the vertical, rad.
+    """
+
+    centre: FloatArray
+    size: FloatArray
+    yaw: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "centre", frozen(self.centre))
+        object.__setattr__(self, "size", frozen(self.size))
+
+    def distance(self, points: FloatArray) -> FloatArray:
+        """Return the signed distance of points, shape (..., 3), m; shape (...), negative inside."""
+        beyond = np.abs(self._inside_frame(points)) - 0.5 * self.size
+        outside = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1)
+        return np.asarray(outside + np.minimum(beyond.max(axis=-1), 0.0))
+
+    def outward(self, points: FloatArray) -> FloatArray:
+        """Return the direction in which the distance grows, shape (..., 3), without unit."""
+        own = self._inside_frame(points)
+        beyond = np.abs(own) - 0.5 * self.size
+        outside = np.maximum(beyond, 0.0)
+        nearest_face = np.where(beyond == beyond.max(axis=-1, keepdims=True), 1.0, 0.0)
+        away = np.where((beyond > 0.0).any(axis=-1, keepdims=True), outside, nearest_face)
+        away = np.where(own < 0.0, -away, away)
+        return np.asarray(away / np.linalg.norm(away, axis=-1, keepdims=True) @ _about_z(self.yaw).T)
+
+    def support(self, directions: FloatArray) -> FloatArray:
+        """Return the largest n . x over the solid for unit vectors n, shape (..., 3); shape (...), m."""
+        return np.asarray(
+            directions @ self.centre + np.abs(directions @ _about_z(self.yaw)) @ (0.5 * self.size)
+        )
+
+    def seen_from(self, position: FloatArray, yaw: float) -> Box:
+        """Return the same solid in a frame at `position`, shape (3,), m, turned by `yaw`, rad, about z."""
+        return Box((self.centre - position) @ _about_z(yaw), self.size, self.yaw - yaw)
+
+    def _inside_frame(self, points: FloatArray) -> FloatArray:
+        return np.asarray((points - self.centre) @ _about_z(self.yaw))
+
+
+Solid = Box | Capsule
+
+
+def _about_z(angle: float) -> FloatArray:
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
