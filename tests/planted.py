@@ -25,7 +25,7 @@ def feasible(arm: Arm, floor: float = 0.0) -> bool:
     return bool(
         link.length.contains(shape.length)
         and shape.bends.max() <= link.max_curvature
-        and shape.total_bend <= link.max_total_bend
+        and shape.total_bend <= link.max_total_bend + 1e-12
         and heights.min() - 0.5 * link.diameter >= floor - 2e-6
         and arm.axis_points[2:, 2].min() >= floor
     )

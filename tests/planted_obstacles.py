@@ -1,19 +1,22 @@
 """Planted tasks with something in the way that the planted arm just keeps clear of.
 
-Clearances are found here by brute force, at points half a millimetre apart, through nothing of the package but
-the forward kinematics of the link.
+Clearances are found here by brute force, at points half a millimetre apart, through nothing of the
+package but the forward kinematics of the link.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from planted import ROBOT, planted_arm
 
 from synth.geometry import Box, Capsule
-from synth.robot import Arm
 from synth.task import Obstacle, PointTarget, Task
+
+if TYPE_CHECKING:
+    from synth.robot import Arm
 
 SPACING = 0.5e-3
 LEAST, MOST = 2e-3, 60e-3  # clearance of the planted arm, m
@@ -76,7 +79,10 @@ def wall_with_window(rng: np.random.Generator, arm: Arm, joints: np.ndarray, _po
     crossing = np.vstack(crossing)
     if not len(crossing):
         return {}
-    low, high = crossing.min(axis=0) - rng.uniform(4e-3, 30e-3, 2), crossing.max(axis=0) + rng.uniform(4e-3, 30e-3, 2)
+    low, high = (
+        crossing.min(axis=0) - rng.uniform(4e-3, 30e-3, 2),
+        crossing.max(axis=0) + rng.uniform(4e-3, 30e-3, 2),
+    )
     low[1] = max(low[1], 0.0)
     half, top = 1.2, 1.3
     if low[0] < -half + 0.05 or high[0] > half - 0.05 or np.prod(high - low) > 0.12:
@@ -88,9 +94,7 @@ def wall_with_window(rng: np.random.Generator, arm: Arm, joints: np.ndarray, _po
         "under the window": (low[0], high[0], 0, low[1]),
     }
     return {
-        name: Box(
-            turn(yaw) @ [distance, (a + b) / 2, (c + d) / 2], np.array([thickness, b - a, d - c]), yaw
-        )
+        name: Box(turn(yaw) @ [distance, (a + b) / 2, (c + d) / 2], np.array([thickness, b - a, d - c]), yaw)
         for name, (a, b, c, d) in pieces.items()
         if d - c > 1e-3
     }
@@ -104,7 +108,9 @@ def shelf(rng: np.random.Generator, _arm: Arm, _joints: np.ndarray, points: np.n
     inside = rng.uniform(0.03, depth - 0.03)
     centre = np.array([x, y, z]) + turn(yaw) @ [depth / 2 - inside, rng.uniform(-0.1, 0.1), 0]
     boards = {"lower board": -below - 0.01, "upper board": above + 0.01}
-    solids = {name: Box(centre + [0, 0, dz], np.array([depth, width, 0.02]), yaw) for name, dz in boards.items()}
+    solids = {
+        name: Box(centre + [0, 0, dz], np.array([depth, width, 0.02]), yaw) for name, dz in boards.items()
+    }
     back = centre + turn(yaw) @ [depth / 2 + 0.01, 0, (above - below) / 2]
     return solids | {"back": Box(back, np.array([0.02, width, above + below + 0.04]), yaw)}
 

@@ -418,7 +418,8 @@ WRONG = {
     "obstacle named twice": (
         task(
             "[]",
-            "[{name: a, sphere: {center: [0, 0, 1], radius: 1}}, {name: a, sphere: {center: [0, 0, 1], radius: 1}}]",
+            "[{name: a, box: {center: [0, 0, 1], size: [1, 1, 1]}}, "
+            "{name: a, sphere: {center: [0, 0, 1], radius: 1}}]",
         ),
         "obstacles[1].name",
         12,

@@ -7,7 +7,8 @@ the distance to anything changes no faster than the arc length, so values at poi
 
 What is in contact by construction is left out. The link's first half diameter sits in its mount. Pieces
 of the tube less than pi r apart along it (r the least bend radius) only touch where they are neighbours:
-a curve of curvature at most 1/r that is s <= pi r long has a chord of at least 2 r sin(s / 2r) (Schur). And within a diameter of the second joint link and rod are the joint.
+a curve of curvature at most 1/r that is s <= pi r long has a chord of at least 2 r sin(s / 2r) (Schur).
+And within a diameter of the second joint link and rod are the joint.
 """
 
 from __future__ import annotations

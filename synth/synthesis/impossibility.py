@@ -41,7 +41,7 @@ def why_impossible(task: Task) -> tuple[str, ...]:
 
     The end effector is at most the longest rigid link from the malleable link's end, and that end is
     in the link's reach. So a target farther than that from the reach is missed by the difference. And
-    neither the end effector nor P2, where the link starts, may be below the floor.
+    neither the end effector nor P2, where the link starts, may be below the floor or in an obstacle.
 
     Args:
         task: The task.
@@ -52,6 +52,7 @@ def why_impossible(task: Task) -> tuple[str, ...]:
     reasons = []
     if task.floor is not None and task.floor > task.robot.d12:
         reasons.append(f"the link starts at P2, {1e3 * (task.floor - task.robot.d12):.1f} mm below the floor")
+    reasons += _in_the_way(task)
     longest = longest_rigid_link(task.robot)
     beyond = -LinkReach(task.robot.link).margin(task.positions - np.array([0.0, 0.0, task.robot.d12]))
     for target, position, distance in zip(task.targets, task.positions, beyond.tolist(), strict=True):
@@ -67,3 +68,26 @@ def why_impossible(task: Task) -> tuple[str, ...]:
                 "end effector stays above it"
             )
     return tuple(reasons)
+
+
+def _in_the_way(task: Task) -> list[str]:
+    """Return a sentence for each obstacle about the base or about a target.
+
+    A link that leaves its mount, half a diameter long, at a point of an obstacle cannot be clear of it. And
+    an end effector that is within the tolerance of a target is at most that much less deep than it.
+    """
+    reasons = []
+    rod_radius = 0.5 * task.robot.rigid_link.diameter
+    p2 = np.array([0.0, 0.0, task.robot.d12])
+    for obstacle, solid in zip(task.obstacles, task.solids, strict=True):
+        depth = -float(solid.distance(p2))
+        if depth > _ROUNDING:
+            reasons.append(f"the link starts at P2, {1e3 * depth:.1f} mm inside {obstacle.name}")
+        depths = rod_radius - solid.distance(task.positions)
+        for target, inside in zip(task.targets, depths.tolist(), strict=True):
+            if inside > target.tolerance + _ROUNDING:
+                reasons.append(
+                    f"{target.name} is in {obstacle.name}: "
+                    f"the end effector would be {1e3 * inside:.1f} mm inside"
+                )
+    return reasons

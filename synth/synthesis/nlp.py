@@ -53,8 +53,12 @@ _GENTLENESS = 1e-4
 _STRAIGHT = 1e-10
 # The solver keeps this much clear, m, so that what it oversteps is not missing afterwards.
 _CLEARANCE = 2e-4
-# A millimetre of overlap costs as much as the last millimetre of a miss of this size, m.
-_NO_MISS_IS_LARGER = 0.3
+# An overlap costs as much as the last bit of a miss of this size, m; it is measured in units of this
+# length, m, because the solver scales the objective down by its steepest slope.
+_LARGE_MISS = 0.01
+_OVERLAP_UNIT = 1e-3
+# How far a start is moved off its bounds.
+_PUSHES = ("ipopt.bound_push", "ipopt.bound_frac", "ipopt.slack_bound_push", "ipopt.slack_bound_frac")
 # With a smaller circle of the end effector, m, the second joint is not worth its name.
 _LEAST_RADIUS = 1e-3
 # `topology: general` keeps this far from the special categories: twice what still counts as one.
@@ -187,7 +191,7 @@ class SynthesisNlp:
         else:
             misses = ca.sum1(weighted)
         bending_energy = ca.sumsqr(curvature) * length / (arcs * robot.link.min_bend_radius)
-        steepest = 2.0 * _NO_MISS_IS_LARGER * float(np.max(task.weights / task.tolerances**2))
+        steepest = 2.0 * _LARGE_MISS * _OVERLAP_UNIT * float(np.max(task.weights / task.tolerances**2))
         self._solver = self._build(misses + _GENTLENESS * bending_energy + steepest * ca.sum1(overlap), stop)
 
     def solve(self, start: Arm, joints: FloatArray) -> NlpAnswer:
@@ -232,6 +236,9 @@ class SynthesisNlp:
             "ipopt.tol": 1e-8,
             "ipopt.constr_viol_tol": 1e-9,
         }
+        if self._overlaps:
+            # From a shape that is nearly clear short first steps lead to a clear one; long ones lose it.
+            options |= {"ipopt.mu_init": 1e-4} | dict.fromkeys(_PUSHES, 1e-5)
         if stop is not None:
             # The solver keeps no reference to its callback: this object must.
             self._watch = _Watch(x.numel(), g.numel(), stop)
@@ -288,9 +295,9 @@ class SynthesisNlp:
         self, plane: Separation, pieces: dict[int, _Piece], tip: ca.SX, theta1: ca.SX, overlap: ca.SX
     ) -> None:
         """Keep a piece on its side of a plane; `tip` is P5 at joint 1 = 0 for each target, (n, 3)."""
-        normal = ca.DM(plane.normal)
+        normal: ca.SX = ca.SX(ca.DM(plane.normal))
         one = pieces[plane.piece] if plane.piece != ROD else self._rod(plane, pieces[PIECES], tip)
-        thickness, allowed = one.thickness, overlap[plane.target]  # ANY_TARGET is the last
+        thickness, allowed = one.thickness, _OVERLAP_UNIT * overlap[plane.target]  # ANY_TARGET is the last
         if plane.other is None:
             c, s = ca.cos(theta1[plane.target]), ca.sin(theta1[plane.target])
             # The direction turned back is the same as the piece turned forward.

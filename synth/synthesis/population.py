@@ -91,7 +91,7 @@ class Population:
         pieces = 4
         curvatures = np.repeat(self.curvatures, pieces, axis=-2)
         lengths = np.repeat(self.length[..., None] / (pieces * ARCS), pieces * ARCS, axis=-1)
-        return chain_points(curvatures, lengths) + np.array([0.0, 0.0, self.robot.d12])
+        return np.asarray(chain_points(curvatures, lengths) + np.array([0.0, 0.0, self.robot.d12]))
 
     @cached_property
     def kinematics(self) -> Kinematics:

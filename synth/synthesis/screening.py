@@ -14,7 +14,7 @@ import numpy as np
 
 from synth.robot import Arm, into_turn
 from synth.synthesis.exact_starts import exact_designs, nearest_to_designs
-from synth.synthesis.population import Population
+from synth.synthesis.population import Population, into_limits
 from synth.synthesis.refinement import Refined, category_offsets, refine, relative_weights, with_theta1
 from synth.synthesis.separation import overlaps
 
@@ -47,6 +47,9 @@ _SETTLED = 1e-8
 _SWAP_ROUNDS, _PARENTS, _CHILDREN = 12, 10, 20
 _SWAPPED_TARGETS = (1, 2, 4, np.inf)
 _EXACT = 1e-14
+# The search around obstacles: rounds, children of each shape, how far they are bent at most (in the unknowns'
+# own units), and how many clear shapes end it.
+_WANDER_ROUNDS, _WANDER_CHILDREN, _WANDER, _CLEAR_ENOUGH = 12, 5, 0.3, 12
 _SHEET = 0.04  # a branch that misses by more than this, m, is no other sheet of the same surface
 
 
@@ -100,6 +103,8 @@ def _starts(task: Task, rng: np.random.Generator) -> Iterator[Start]:
             cost += _overlap_cost(task, population, with_theta1(task, population, theta2.T))
         best = _promising(population, cost, count, designs)
         refined = refine(task, population.take(best), theta2[:, best].T)
+        if task.obstacles:
+            refined = _wandered_clear(task, refined, rng)
         yield from itertools.islice(_distinct(task, refined), _STARTS_PER_STEP)
     if refined is not None:
         yield from _distinct(task, _with_branches_swapped(task, refined, rng))
@@ -129,6 +134,29 @@ def _distinct(task: Task, refined: Refined) -> Iterator[Start]:
         if np.all(np.linalg.norm(taken - poses[index], axis=1) > _DISTINCT):
             taken = np.vstack([taken, poses[index]])
             yield Start(population.arm(index, task.base), refined.joints[index])
+
+
+def _wandered_clear(task: Task, refined: Refined, rng: np.random.Generator) -> Refined:
+    """Return shapes after a search for links that reach around the obstacles.
+
+    Many bends of the link give one surface. So the best shapes are bent a little at random and led back to
+    the targets, the best of both again, and so on; the nonlinear program knows which way obstacles lie,
+    but only this finds the other side of one.
+    """
+    total = refined.cost + _overlap_cost(task, refined.population, refined.joints)
+    for _ in range(_WANDER_ROUNDS):
+        if np.count_nonzero(total < _SETTLED) >= _CLEAR_ENOUGH:
+            break
+        order = np.argsort(total, kind="stable")
+        parents = np.resize(order[: len(order) // _WANDER_CHILDREN], len(order))
+        x = refined.population.unknowns[parents]
+        x = into_limits(task.robot, x + rng.uniform(0.0, _WANDER) * rng.normal(size=x.shape))
+        children = refine(task, Population(task.robot, x), refined.joints[parents, :, 1])
+        child_total = children.cost + _overlap_cost(task, children.population, children.joints)
+        best = np.argsort(np.concatenate([total, child_total]), kind="stable")[: len(total)]
+        refined = _best_of_both(refined, children, best)
+        total = np.concatenate([total, child_total])[best]
+    return refined
 
 
 def _with_branches_swapped(task: Task, refined: Refined, rng: np.random.Generator) -> Refined:
@@ -181,10 +209,15 @@ def _swapped_once(
 
 def _better(one: Refined, other: Refined) -> Refined:
     """Return as many of the best of both as there are of the first."""
-    cost = np.concatenate([one.cost, other.cost])
-    best = np.argsort(cost, kind="stable")[: len(one.cost)]
+    best = np.argsort(np.concatenate([one.cost, other.cost]), kind="stable")[: len(one.cost)]
+    return _best_of_both(one, other, best)
+
+
+def _best_of_both(one: Refined, other: Refined, best: NDArray[np.intp]) -> Refined:
+    """Return some of both, counted through."""
     unknowns = np.concatenate([one.population.unknowns, other.population.unknowns])
     joints = np.concatenate([one.joints, other.joints])
+    cost = np.concatenate([one.cost, other.cost])
     return Refined(Population(one.population.robot, unknowns[best]), joints[best], cost[best])
 
 

@@ -24,6 +24,7 @@ from synth.robot import ArmBody, turned
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from synth.geometry import Solid
     from synth.robot import Arm
     from synth.synthesis.population import Population
     from synth.task import Task
@@ -32,8 +33,11 @@ PIECES = 16  # of the tube
 COLUMN, ROD = 0, -1  # the base's column P1P2 and the rigid link, beside the pieces 1 to 16
 ANY_TARGET = -1
 
-_SAMPLES = 4  # of each piece
-_ROD_SAMPLES = 48
+_ROD_SAMPLES = 12
+_GOLDEN_STEPS = 44
+_GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
+_TURNS = 60
+_CROSSING = 1e-9  # m; nearer segments cross
 # Planes are kept for what is nearer than this, m: farther than most steps of the solver move anything.
 _NEAR = 0.06
 _NEAR_ITSELF = 0.03
@@ -90,67 +94,91 @@ def overlaps(task: Task, population: Population, joints: FloatArray) -> FloatArr
     robot = task.robot
     tube = population.centreline
     tip = population.kinematics.each_target().forward(0.0, joints[..., 1])
-    share = np.linspace(0.0, 1.0, _ROD_SAMPLES // 4)[:, None]
+    share = np.linspace(0.0, 1.0, _ROD_SAMPLES)[:, None]
     rod = tube[:, None, -1:] + share * (tip[..., None, :] - tube[:, None, -1:])
     for points, radius in (
         (np.broadcast_to(tube[:, None], (*depth.shape, *tube.shape[1:])), 0.5 * robot.link.diameter),
         (rod, 0.5 * robot.rigid_link.diameter),
     ):
-        points = turned(points, joints[..., 0, None])
+        there = turned(points, joints[..., 0, None])
         for solid in task.solids:
-            depth = np.maximum(depth, radius - solid.distance(points).min(axis=-1))
+            depth = np.maximum(depth, radius - solid.distance(there).min(axis=-1))
     return depth
 
 
 def _from_obstacles(task: Task, arm: Arm, joints: FloatArray) -> Iterator[Separation]:
     body = ArmBody(arm)
-    tube = body.tube(np.linspace(0.0, arm.shape.length, PIECES * _SAMPLES + 1))
-    along = np.linspace(0.0, body.rod_length, _ROD_SAMPLES)
-    pieces = np.arange(PIECES)[:, None] * _SAMPLES + np.arange(_SAMPLES + 1)
+    nodes = body.tube(np.linspace(0.0, arm.shape.length, PIECES + 1))
+    link = turned(nodes, joints[:, :1])
+    rod = np.stack([link[:, -1], turned(body.rod(np.asarray(body.rod_length), joints[:, 1]), joints[:, 0])])
+    start = np.concatenate([link[:, :-1], rod[:1].swapaxes(0, 1)], axis=1)
+    end = np.concatenate([link[:, 1:], rod[1:].swapaxes(0, 1)], axis=1)
+    radius = np.append(np.full(PIECES, body.tube_radius), body.rod_radius)
     for solid in task.solids:
-        for target, (theta1, theta2) in enumerate(joints):
-            tubes = turned(tube, theta1)[pieces]
-            rod = turned(body.rod(along, theta2), theta1)
-            for piece, points, radius in (
-                *((index + 1, points, body.tube_radius) for index, points in enumerate(tubes)),
-                (ROD, rod, body.rod_radius),
-            ):
-                distance = solid.distance(points)
-                nearest = int(np.argmin(distance))
-                if distance[nearest] < radius + _NEAR:
-                    normal = solid.outward(points[nearest])
-                    yield Separation(target, piece, None, normal, float(solid.support(normal)))
+        nearest = _nearest_to_solid(solid, start, end)
+        near = solid.distance(nearest) < radius + _NEAR
+        for target, piece in np.argwhere(near).tolist():
+            normal = solid.outward(nearest[target, piece])
+            number = ROD if piece == PIECES else piece + 1
+            yield Separation(target, number, None, normal, float(solid.support(normal)))
 
 
 def _from_itself(arm: Arm, joints: FloatArray) -> Iterator[Separation]:
     body, link = ArmBody(arm), arm.robot.link
-    length, joint = arm.shape.length, link.diameter
-    along = np.linspace(0.0, length, PIECES * _SAMPLES + 1)
-    column = np.linspace(-arm.robot.d12, 0.0, _SAMPLES + 1)
-    pieces = np.vstack([column, along[np.arange(PIECES)[:, None] * _SAMPLES + np.arange(_SAMPLES + 1)]])
-    tubes = body.tube(pieces)
-    for one in range(PIECES + 1):
-        for other in range(one):
-            if pieces[one, 0] - pieces[other, -1] >= np.pi * link.min_bend_radius - length / PIECES:
-                normal, distance = _apart(tubes[one], tubes[other])
-                if distance < 2.0 * body.tube_radius + _NEAR_ITSELF:
-                    yield Separation(ANY_TARGET, one, other, normal)
-    rod = np.linspace(joint, max(body.rod_length, joint), _ROD_SAMPLES)
+    along = np.append(-arm.robot.d12, np.linspace(0.0, arm.shape.length, PIECES + 1))
+    nodes = body.tube(along)
+    one, other = np.tril_indices(PIECES + 1, -1)
+    # What is nearer along the tube is its neighbourhood (see `ArmBody`).
+    far = along[one] - along[other + 1] >= np.pi * link.min_bend_radius - arm.shape.length / PIECES
+    one, other = one[far], other[far]
+    normals, distances = _apart(nodes[one], nodes[one + 1], nodes[other], nodes[other + 1])
+    for k in np.flatnonzero(distances < 2.0 * body.tube_radius + _NEAR_ITSELF):
+        yield Separation(ANY_TARGET, int(one[k]), int(other[k]), normals[k])
+    joint, length = link.diameter, body.rod_length
+    clear = np.flatnonzero(along[1:] <= arm.shape.length - joint)
     for target, theta2 in enumerate(joints[:, 1]):
-        rods = body.rod(rod, theta2)
-        for piece in np.flatnonzero(pieces[:, -1] <= length - joint):
-            normal, distance = _apart(rods, tubes[piece])
-            if distance < body.rod_radius + body.tube_radius + _NEAR_ITSELF:
-                yield Separation(target, ROD, int(piece), normal)
+        start, end = body.rod(np.array([min(joint, length), length]), theta2)
+        normals, distances = _apart(start, end, nodes[clear], nodes[clear + 1])
+        for k in np.flatnonzero(distances < body.rod_radius + body.tube_radius + _NEAR_ITSELF):
+            yield Separation(target, ROD, int(clear[k]), normals[k])
 
 
-def _apart(one: FloatArray, other: FloatArray) -> tuple[FloatArray, float]:
-    """Return the direction to the first of two rows of points from the second, and their distance."""
-    apart = one[:, None] - other
+def _nearest_to_solid(solid: Solid, start: FloatArray, end: FloatArray) -> FloatArray:
+    """Return the points of segments, ends of shape (..., 3), that are nearest to a solid, or deepest.
+
+    The signed distance from a convex solid is a convex function, so a golden section finds them.
+    """
+    lower, upper = np.zeros((*start.shape[:-1], 1)), np.ones((*start.shape[:-1], 1))
+    for _ in range(_GOLDEN_STEPS):
+        span = _GOLDEN * (upper - lower)
+        left, right = upper - span, lower + span
+        left_is_nearer = (
+            solid.distance(start + left * (end - start)) < solid.distance(start + right * (end - start))
+        )[..., None]
+        lower, upper = np.where(left_is_nearer, lower, left), np.where(left_is_nearer, right, upper)
+    return np.asarray(start + 0.5 * (lower + upper) * (end - start))
+
+
+def _apart(
+    start: FloatArray, end: FloatArray, other_start: FloatArray, other_end: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the directions to segments from others where they are nearest, (..., 3), and the distances.
+
+    The squared distance is convex in both places along the segments: each in turn is set to its best.
+    """
+    along, other_along = end - start, other_end - other_start
+    place = np.full(np.broadcast_shapes(start.shape, other_start.shape)[:-1], 0.5)
+    for _ in range(_TURNS):
+        point = start + place[..., None] * along
+        other_place = _clipped_share(point - other_start, other_along)
+        place = _clipped_share(other_start + other_place[..., None] * other_along - start, along)
+    apart = start + place[..., None] * along - other_start - other_place[..., None] * other_along
     distance = np.linalg.norm(apart, axis=-1)
-    nearest = np.unravel_index(np.argmin(distance), distance.shape)
-    least = float(distance[nearest])
-    if least > 0.0:
-        return apart[nearest] / least, least
-    across = np.cross(one[-1] - one[0], other[-1] - other[0])
-    return across / max(float(np.linalg.norm(across)), 1e-12), 0.0
+    across = np.cross(along, other_along)
+    normal = np.where(distance[..., None] > _CROSSING, apart, across)
+    return normal / np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-12), distance
+
+
+def _clipped_share(vector: FloatArray, along: FloatArray) -> FloatArray:
+    squared = np.maximum(np.einsum("...i,...i", along, along), 1e-30)
+    return np.asarray(np.clip(np.einsum("...i,...i", vector, along) / squared, 0.0, 1.0))

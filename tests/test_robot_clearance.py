@@ -1,0 +1,80 @@
+import numpy as np
+import pytest
+from planted import ROBOT, planted_arm
+from planted_obstacles import brute_clearance
+
+from synth.geometry import Box, Capsule
+from synth.robot import Arm, ArmBody, LinkShape
+
+CLOSE = 3e-5 + 1e-6  # what the bound gives away, and the spacing of the brute force
+
+
+def scene(seed: int):
+    rng = np.random.default_rng(seed)
+    limits = ROBOT.joint_limits
+    joints = np.column_stack(
+        [
+            rng.uniform(limits.base.lower, limits.base.upper, 3),
+            rng.uniform(limits.second.lower, limits.second.upper, 3),
+        ]
+    )
+    solids = [
+        Box(rng.uniform(-0.6, 0.6, 3), rng.uniform(0.05, 0.4, 3), rng.uniform(0, 6)),
+        Capsule(rng.uniform(-0.6, 0.6, (2, 3)), 0.05),
+        Capsule.sphere(rng.uniform(-0.6, 0.6, 3), 0.1),
+    ]
+    return planted_arm(rng), joints, solids
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_clearance_is_the_least_along_the_curve(seed):
+    arm, joints, solids = scene(seed)
+    bounds = ArmBody(arm).from_obstacles(joints, solids)
+    assert bounds.shape == (3, 3, 2)
+    for pair, joint in zip(bounds, joints, strict=True):
+        for bound, solid in zip(pair, solids, strict=True):
+            brute = brute_clearance(arm, joint[None], [solid])
+            assert min(bound) <= brute
+            assert min(bound) == pytest.approx(min(brute, 0.1), abs=CLOSE)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_on_the_way_it_is_the_least_of_all_joint_angles_between(seed):
+    arm, joints, solids = scene(seed)
+    start, end = joints[:1], joints[:1] + [[0.3, -0.2]]
+    bound = ArmBody(arm).from_obstacles_between(start, end, solids).min()
+    steps = start + np.linspace(0, 1, 60)[:, None] * (end - start)
+    at_steps = ArmBody(arm).from_obstacles(steps, solids).min()
+    assert bound <= at_steps + CLOSE
+    assert bound == pytest.approx(at_steps, abs=5e-3)
+
+
+def test_the_lowest_point_is_the_tubes_not_the_centrelines():
+    arm = planted_arm(np.random.default_rng(3))
+    s = np.linspace(0.025, arm.shape.length, 20_000)
+    lowest = (arm.robot.d12 + arm.shape.point_at(s)[:, 2]).min() - 0.025
+    assert ArmBody(arm).lowest() == pytest.approx(lowest, abs=1e-7)
+
+
+def curled(turn: float) -> Arm:
+    """Return an arm whose link is a circle in the plane y = 0 through `turn` rad, then straight."""
+    bent = turn * 0.11
+    shape = LinkShape(np.array([[1 / 0.11, 0.0], [0.0, 0.0]]), np.array([bent, 0.7 - bent]))
+    return Arm(ROBOT, shape, 0.455, 0.46)
+
+
+def test_a_loop_meets_itself():
+    """The link turns right round and runs on beside its own start: the tube is in itself by its diameter."""
+    assert ArmBody(curled(6.0)).tube_from_itself() < -0.02
+    assert ArmBody(curled(3.0)).tube_from_itself() == pytest.approx(0.02)
+
+
+def test_the_rod_folded_onto_the_link_meets_it():
+    body = ArmBody(curled(0.0))
+    clearances = body.rod_from_tube(np.array([0.0, 0.5 * np.pi, np.pi]))
+    # Folded back, the rod is inside the tube or beside it by what P5's circle is off the link's end.
+    offset, _ = ROBOT.end_effector_circle(0.455, 0.46)
+    joint = 0.05 * abs(offset) / body.rod_length
+    assert clearances[0] == pytest.approx(max(joint - 0.025, -0.025), abs=1e-3)
+    assert clearances[1] == pytest.approx(0.02)
+    assert clearances[2] == pytest.approx(0.02)
