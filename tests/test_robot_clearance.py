@@ -42,11 +42,20 @@ def test_clearance_is_the_least_along_the_curve(seed):
 def test_on_the_way_it_is_the_least_of_all_joint_angles_between(seed):
     arm, joints, solids = scene(seed)
     start, end = joints[:1], joints[:1] + [[0.3, -0.2]]
-    bound = ArmBody(arm).from_obstacles_between(start, end, solids).min()
+    bounds = ArmBody(arm).from_obstacles(start, solids, end=end)[0]
     steps = start + np.linspace(0, 1, 60)[:, None] * (end - start)
-    at_steps = ArmBody(arm).from_obstacles(steps, solids).min()
-    assert bound <= at_steps + CLOSE
-    assert bound == pytest.approx(at_steps, abs=5e-3)
+    at_steps = ArmBody(arm).from_obstacles(steps, solids).min(axis=0)
+    assert ((bounds == -np.inf) == (at_steps < 0)).all()
+    clear = at_steps >= 0
+    assert (bounds[clear] <= at_steps[clear] + CLOSE).all()
+    assert bounds[clear] == pytest.approx(at_steps[clear], abs=5e-3)
+
+
+def test_on_the_way_the_rod_may_meet_the_tube():
+    body = ArmBody(curled(0.0))
+    way = body.rod_from_tube(np.array([0.5 * np.pi, 0.5 * np.pi]), np.array([np.pi, 0.0]))
+    assert way[0] == pytest.approx(0.02)
+    assert way[1] == -np.inf
 
 
 def test_the_lowest_point_is_the_tubes_not_the_centrelines():

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from synth.export.plain import plain
 from synth.guide import MARKERS, make_guide
+from synth.synthesis import MOST_MOTIONS, motions
 from synth.synthesis.solution import target_results
 from synth.version import __version__
 
@@ -47,10 +48,16 @@ def solution_to_json(solution: Solution) -> dict[str, Any]:
         "time": solution.time,
         **shape,
         "targets": _targets(task, designs[0]) if designs else _targets_missed(task),
+        "motions": list(motions(task, designs[0])) if _has_motions(solution) else None,
         "bound": None,
         "alternatives": [_alternative(task, design) for design in designs[1:]],
     }
     return plain(content)
+
+
+def _has_motions(solution: Solution) -> bool:
+    """Whether ways from target to target mean anything: there is a shape, and the targets are no cloud."""
+    return bool(solution.designs) and len(solution.task.targets) <= MOST_MOTIONS
 
 
 _SHAPE_FIELDS = (
@@ -132,6 +139,7 @@ def _targets_missed(task: Task) -> list[object]:
             "miss": None,
             "tolerance": target.tolerance,
             "within_tolerance": False,
+            "clearance": None,
             "joints": None,
             "alternatives": [],
         }

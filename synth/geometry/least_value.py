@@ -23,6 +23,7 @@ def least_values(
     rates: FloatArray,
     tolerance: float,
     ceiling: float,
+    floor: float = -np.inf,
 ) -> tuple[FloatArray, FloatArray]:
     """Return lower bounds of functions over boxes, by dividing the boxes into cells.
 
@@ -37,6 +38,7 @@ def least_values(
         rates: How fast each function can change along each coordinate, shape (N, k).
         tolerance: How far the bound may be below the least value.
         ceiling: Values above this need not be told apart.
+        floor: Nor values below this: once one is seen, minus infinity is bound enough.
 
     Returns:
         For each function a bound that it nowhere falls below, shape (N,), and where it was seen least,
@@ -52,7 +54,7 @@ def least_values(
         at[which[seen]] = centre[seen]
         spread = rates[which] * half
         bounds = values - spread.sum(axis=1)
-        enough = np.minimum(least - tolerance, ceiling)
+        enough = np.where(least < floor, -np.inf, np.minimum(least - tolerance, ceiling))
         open_cells = bounds < enough[which]
         if not open_cells.any():
             return enough, at

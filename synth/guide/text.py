@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.guide.guide import make_guide
+from synth.robot import MOST_CLEARANCE
+from synth.synthesis import motions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -35,6 +37,7 @@ def summary_text(solution: Solution) -> str:
         arm = solution.robot
         bullets += [
             *_target_lines(solution.targets),
+            *_motion_lines(solution),
             arm.category_distances.describe(),
             link_sentence(arm.shape),
         ]
@@ -131,6 +134,13 @@ def _shape_line(design: Design) -> str:
     return f"worst miss {worst:8.3f} mm  {link_sentence(design.arm.shape)}, {design.arm.category.value}"
 
 
+def _motion_lines(solution: Solution) -> list[str]:
+    """Return a line for each way from a target to the next, where they are few enough to be read."""
+    if not solution.found or len(solution.task.targets) > _MOST_TARGETS:
+        return []
+    return [motion.describe() for motion in motions(solution.task, solution.best)]
+
+
 def _target_lines(targets: Sequence[TargetResult]) -> list[str]:
     """Return a line for each target, names and numbers in columns; of many targets the worst only."""
     lines = []
@@ -141,9 +151,19 @@ def _target_lines(targets: Sequence[TargetResult]) -> list[str]:
     width = max(len(target.name) for target in targets)
     for target in targets:
         theta1, theta2 = (math.degrees(angle) for angle in target.joints)
+        clear = "" if math.isinf(target.clearance) else f"  clear by {_clearance(target.clearance)}"
         lines.append(
             f"{target.name:<{width}}  {'reached' if target.within_tolerance else 'MISSED':7}  "
             f"miss {1e3 * target.miss:8.3f} of {1e3 * target.tolerance:.3f} mm  "
-            f"joints {theta1:z7.2f}, {theta2:z7.2f} deg"
+            f"joints {theta1:z7.2f}, {theta2:z7.2f} deg{clear}"
         )
     return lines
+
+
+def _clearance(clearance: float) -> str:
+    """Return a clearance, which is told no farther than it was looked for."""
+    return (
+        f"{1e3 * clearance:.1f} mm"
+        if clearance < MOST_CLEARANCE - 1e-9
+        else f"{1e3 * clearance:.0f} mm and more"
+    )

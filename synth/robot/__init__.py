@@ -2,7 +2,7 @@
 
 from synth.robot.arm import Arm, JointBranches
 from synth.robot.base import BasePose
-from synth.robot.clearance import ArmBody, turned
+from synth.robot.clearance import CLEAR, MOST_CLEARANCE, ArmBody, turned
 from synth.robot.hardware import Interval, JointLimits, MalleableLink, RigidLink, Robot
 from synth.robot.kinematics import Kinematics, into_turn
 from synth.robot.link import LinkShape, arc_motion, chain_end, chain_points
@@ -11,6 +11,8 @@ from synth.robot.reach import LinkReach
 from synth.robot.workspace import SurfaceMesh, Workspace
 
 __all__ = [
+    "CLEAR",
+    "MOST_CLEARANCE",
     "PRESETS",
     "Arm",
     "ArmBody",

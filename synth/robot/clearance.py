@@ -22,7 +22,7 @@ import numpy as np
 from synth.geometry import least_values
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -31,8 +31,15 @@ if TYPE_CHECKING:
     from synth.robot.arm import Arm
 
 _TOLERANCE = 2e-5  # m, by which a stated clearance may be less than the true one
-_CEILING = 0.1  # m; a clearance beyond is stated as this much
+# A bound of no less than this, m, is of what is clear: rounding aside, nothing overlaps.
+CLEAR = -_TOLERANCE - 2e-6
+MOST_CLEARANCE = 0.1  # m; a clearance beyond is stated as this much
 _SELF_CEILING = 0.02  # m, likewise for what the arm keeps from itself
+_ROUNDING = 2e-6  # m
+
+
+# From where to where along it, and how fast a distance can change along it.
+_Side = tuple[float, float, "float | FloatArray"]
 
 
 @dataclass(frozen=True)
@@ -89,99 +96,78 @@ class ArmBody:
             self.arm.robot.d12 + shape.lowest(beyond=min(self.tube_radius, shape.length)) - self.tube_radius
         )
 
-    def from_obstacles(self, joints: FloatArray, solids: Sequence[Solid]) -> FloatArray:
-        """Return how far tube and rod keep from solids at joint angles.
+    def from_obstacles(
+        self, start: FloatArray, solids: Sequence[Solid], *, end: FloatArray | None = None
+    ) -> FloatArray:
+        """Return how far tube and rod keep from solids at joint angles, or on straight ways between them.
+
+        On the way a point moves by no more than |d theta1| times its distance from axis 1, plus, on the
+        rod, |d theta2| times its distance from axis 2.
 
         Args:
-            joints: Angles (theta1, theta2), shape (n, 2), rad.
+            start: Angles (theta1, theta2), shape (n, 2), rad.
             solids: Solids in the base frame.
+            end: Angles at which the ways end, both joints moving evenly, shape (n, 2), rad.
 
         Returns:
             Lower bounds of the distance between the surfaces, at most 0.1 m, negative inside; shape
-            (n, len(solids), 2), the tube first.
+            (n, len(solids), 2), the tube first. On a way that is not clear, minus infinity.
         """
-        return self.from_obstacles_between(joints, joints, solids)
-
-    def from_obstacles_between(
-        self, start: FloatArray, end: FloatArray, solids: Sequence[Solid], ceiling: float = _CEILING
-    ) -> FloatArray:
-        """Return how far tube and rod keep from solids on straight motions of both joints.
-
-        On the way a point moves by no more than |d theta1| times its distance from axis 1, plus, on the
-        rod, |d theta2| times the radius of P5's circle.
-
-        Args:
-            start: Joint angles at the start, shape (n, 2), rad.
-            end: Joint angles at the end, shape (n, 2), rad.
-            solids: Solids in the base frame.
-            ceiling: Largest clearance that is told from larger ones, m.
-
-        Returns:
-            As `from_obstacles`.
-        """
-        motions, count = len(start), len(solids)
-        motion = np.repeat(np.arange(motions), count)
-        solid = np.tile(np.arange(count), motions)
-        turn, second = np.abs(end - start).T[:, motion]
-        bounds = np.empty((motions * count, 2))
+        ways, count = _Ways(start, end), len(solids)
+        way, solid = np.repeat(np.arange(len(start)), count), np.tile(np.arange(count), len(start))
         link, rod = self.arm.shape.length, self.rod_length
+        turn, second = ways.travel.T[:, way]
 
-        def distance(which: NDArray[np.intp], points: FloatArray, share: FloatArray) -> FloatArray:
-            joints = self._between(start, end, motion[which], share)
-            points = turned(points, joints[:, 0])
-            values = np.empty(len(which))
+        def distance(which: NDArray[np.intp], points: FloatArray, joints: FloatArray) -> FloatArray:
+            there, values = turned(points, joints[:, 0]), np.empty(len(which))
             for index, each in enumerate(solids):
                 mine = solid[which] == index
-                values[mine] = each.distance(points[mine])
+                values[mine] = each.distance(there[mine])
             return values
 
-        def tube(which: NDArray[np.intp], at: FloatArray) -> FloatArray:
-            return distance(which, self.tube(at[:, 0]), at[:, 1])
+        def from_tube(which: NDArray[np.intp], at: FloatArray) -> FloatArray:
+            return distance(which, self.tube(at[:, 0]), ways.joints(way[which], at[:, 1]))
 
-        def rigid(which: NDArray[np.intp], at: FloatArray) -> FloatArray:
-            theta2 = self._between(start, end, motion[which], at[:, 1])[:, 1]
-            return distance(which, self.rod(at[:, 0], theta2), at[:, 1])
+        def from_rod(which: NDArray[np.intp], at: FloatArray) -> FloatArray:
+            joints = ways.joints(way[which], at[:, 1])
+            return distance(which, self.rod(at[:, 0], joints[:, 1]), joints)
 
-        sides = np.ones(len(motion))
-        for part, (values, first, last, radius, rates) in enumerate(
-            (
-                (tube, min(self.tube_radius, link), link, self.tube_radius, turn * link),
-                (rigid, 0.0, rod, self.rod_radius, turn * (link + rod) + second * rod),
-            )
+        bounds = []
+        for values, first, last, radius, rate in (
+            (from_tube, min(self.tube_radius, link), link, self.tube_radius, turn * link),
+            (from_rod, 0.0, rod, self.rod_radius, turn * (link + rod) + second * rod),
         ):
-            lower, upper = np.stack([first * sides, 0.0 * sides]), np.stack([last * sides, sides])
-            upper[1, rates == 0.0] = 0.0
-            least, _ = least_values(
-                values, lower.T, upper.T, np.stack([sides, rates]).T, _TOLERANCE, radius + ceiling
-            )
-            bounds[:, part] = least - radius
-        return bounds.reshape(motions, count, 2)
+            sides: list[_Side] = [(first, last, 1.0), (0.0, ways.share, rate)]
+            bounds.append(self._least(values, sides, radius, MOST_CLEARANCE, ways.floor))
+        return np.stack(bounds, axis=-1).reshape(len(start), count, 2)
 
-    def rod_from_tube(self, theta2: FloatArray) -> FloatArray:
-        """Return how far the rod keeps from the tube at angles of joint 2.
+    def rod_from_tube(self, start: FloatArray, end: FloatArray | None = None) -> FloatArray:
+        """Return how far the rod keeps from the tube at angles of joint 2, or on ways between them.
 
         Args:
-            theta2: The angles, shape (n,), rad.
+            start: The angles, shape (n,), rad.
+            end: Angles at which the ways end, shape (n,), rad.
 
         Returns:
             Lower bounds of the distance between the surfaces, at most 0.02 m, negative where they
-            overlap; shape (n,).
+            overlap; shape (n,). On a way that is not clear, minus infinity.
         """
         joint = self.arm.robot.link.diameter
-        last, radii = self.arm.shape.length - joint, self.tube_radius + self.rod_radius
+        last = self.arm.shape.length - joint
         if joint == 0.0 or last <= 0.0 or self.rod_length <= joint:
-            return np.full(len(theta2), _SELF_CEILING)
+            return np.full(len(start), _SELF_CEILING)
+        ways = _Ways(start[:, None], None if end is None else end[:, None])
 
         def distance(which: NDArray[np.intp], at: FloatArray) -> FloatArray:
-            apart = self.tube(at[:, 0]) - self.rod(at[:, 1], theta2[which])
-            return np.asarray(np.linalg.norm(apart, axis=1))
+            rod = self.rod(at[:, 1], ways.joints(which, at[:, 2])[:, 0])
+            return np.asarray(np.linalg.norm(self.tube(at[:, 0]) - rod, axis=1))
 
-        lower = np.tile([-self.arm.robot.d12, joint], (len(theta2), 1))
-        upper = np.tile([last, self.rod_length], (len(theta2), 1))
-        least, _ = least_values(
-            distance, lower, upper, np.ones_like(lower), _TOLERANCE, radii + _SELF_CEILING
-        )
-        return np.asarray(least - radii)
+        sides: list[_Side] = [
+            (-self.arm.robot.d12, last, 1.0),
+            (joint, self.rod_length, 1.0),
+            (0.0, ways.share, ways.travel[:, 0] * self.rod_length),
+        ]
+        return self._least(distance, sides, self.tube_radius + self.rod_radius, _SELF_CEILING, ways.floor)
 
     def tube_from_itself(self) -> float:
         """Return how far the tube keeps from itself: a lower bound, at most 0.02 m, negative inside."""
@@ -196,21 +182,38 @@ class ArmBody:
             other = np.minimum(at[:, 0] + apart + at[:, 1], link)
             return np.asarray(np.linalg.norm(self.tube(at[:, 0]) - self.tube(other), axis=1))
 
-        least, _ = least_values(
-            distance,
-            np.array([[-column, 0.0]]),
-            np.array([[room - column, room]]),
-            np.array([[2.0, 1.0]]),
-            _TOLERANCE,
-            2.0 * self.tube_radius + _SELF_CEILING,
-        )
-        return float(least[0]) - 2.0 * self.tube_radius
+        sides: list[_Side] = [(-column, room - column, np.full(1, 2.0)), (0.0, room, 1.0)]
+        return float(self._least(distance, sides, 2.0 * self.tube_radius, _SELF_CEILING, -math.inf)[0])
 
     @staticmethod
-    def _between(
-        start: FloatArray, end: FloatArray, motion: NDArray[np.intp], share: FloatArray
+    def _least(
+        distance: Callable[[NDArray[np.intp], FloatArray], FloatArray],
+        sides: Sequence[_Side],
+        radii: float,
+        ceiling: float,
+        floor: float,
     ) -> FloatArray:
-        return np.asarray(start[motion] + share[:, None] * (end - start)[motion])
+        """Return lower bounds of distances less radii, for sides that each go from, to, and at a rate."""
+        count = np.broadcast_shapes(*(np.shape(rate) for *_, rate in sides))[0]
+        lower, upper, rates = (
+            np.stack([np.broadcast_to(side[k], count) for side in sides], axis=-1) for k in range(3)
+        )
+        least, _ = least_values(distance, lower, upper, rates, _TOLERANCE, radii + ceiling, radii + floor)
+        return least - radii
+
+
+class _Ways:
+    """Straight ways of the joints, shape (n, k), or standing still where there is no end."""
+
+    def __init__(self, start: FloatArray, end: FloatArray | None) -> None:
+        self._start, self._change = start, np.zeros_like(start) if end is None else end - start
+        self.travel = np.abs(self._change)
+        self.share = 0.0 if end is None else 1.0  # of the way that there is
+        self.floor = -math.inf if end is None else -_ROUNDING  # how deep in something need not be known
+
+    def joints(self, way: NDArray[np.intp], share: FloatArray) -> FloatArray:
+        """Return the angles at a share of ways, both of shape (K,); shape (K, k), rad."""
+        return np.asarray(self._start[way] + share[:, None] * self._change[way])
 
 
 def turned(points: FloatArray, angle: FloatArray) -> FloatArray:

@@ -1,11 +1,14 @@
 """The synthesis: screen, polish, verify; `solve` is its one verb."""
 
+from synth.synthesis.motion import MOST_MOTIONS, Motion, motions
 from synth.synthesis.solution import Design, NotFoundError, Solution, Status, TargetResult, Timing
 from synth.synthesis.solve import Progress, solve
 from synth.synthesis.verification import Verification, Violation, verify
 
 __all__ = [
+    "MOST_MOTIONS",
     "Design",
+    "Motion",
     "NotFoundError",
     "Progress",
     "Solution",
@@ -14,6 +17,7 @@ __all__ = [
     "Timing",
     "Verification",
     "Violation",
+    "motions",
     "solve",
     "verify",
 ]

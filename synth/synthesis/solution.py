@@ -5,8 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from synth.arrays import FloatArray, frozen
 from synth.errors import SynthError
+from synth.robot import CLEAR, ArmBody
 from synth.sentences import SentenceEnum
 
 if TYPE_CHECKING:
@@ -56,8 +59,11 @@ class TargetResult:
         reached: Where the end effector gets to, shape (3,).
         miss: Distance between the two, m; infinite where there is no shape.
         within_tolerance: Whether the target is reached.
+        clearance: How far the arm at least keeps from the obstacles there, m; told up to 0.1 m, and
+            infinite without obstacles.
         joints: Joint angles (theta1, theta2), rad.
-        alternatives: Other joint angles that reach it within its tolerance, shape (k, 2), rad.
+        alternatives: Other joint angles that reach it within its tolerance, shape (k, 2), rad, as clear of
+            everything.
     """
 
     name: str
@@ -66,6 +72,7 @@ class TargetResult:
     reached: FloatArray
     miss: float
     within_tolerance: bool
+    clearance: float
     joints: FloatArray
     alternatives: FloatArray
 
@@ -156,24 +163,43 @@ class Solution:
         return self
 
 
+def joints_reaching(task: Task, design: Design) -> list[FloatArray]:
+    """Return for each target all joint angles at which it is reached, clear of everything, the best first.
+
+    Args:
+        task: The task.
+        design: The shape.
+
+    Returns:
+        Pairs (theta1, theta2), shape (k, 2), rad; the closest alone where the target is missed.
+    """
+    check, body = design.verification, ArmBody(design.arm)
+    joints = []
+    for index, target in enumerate(task.targets):
+        reaching = design.arm.inverse_kinematics(target.position).reaching(target.tolerance)
+        others = reaching[abs(reaching - check.joints[index]).max(axis=1) > 1e-3]
+        least = body.from_obstacles(others, task.solids).min(axis=(1, 2), initial=np.inf)
+        clear = np.minimum(least, body.rod_from_tube(others[:, 1])) >= CLEAR
+        joints.append(np.vstack([check.joints[index], others[clear & check.within_tolerance[index]]]))
+    return joints
+
+
 def target_results(task: Task, design: Design) -> tuple[TargetResult, ...]:
     """Return what becomes of each target of a task in one shape."""
     check = design.verification
-    results = []
-    for index, target in enumerate(task.targets):
-        branches = design.arm.inverse_kinematics(target.position)
-        reaching = branches.reaching(target.tolerance)
-        others = abs(reaching - check.joints[index]).max(axis=1) > 1e-3
-        results.append(
-            TargetResult(
-                name=target.name,
-                position=target.position,
-                tolerance=target.tolerance,
-                reached=frozen(check.reached[index]),
-                miss=float(check.misses[index]),
-                within_tolerance=check.within_tolerance[index],
-                joints=frozen(check.joints[index]),
-                alternatives=frozen(reaching[others]),
-            )
+    return tuple(
+        TargetResult(
+            name=target.name,
+            position=target.position,
+            tolerance=target.tolerance,
+            reached=frozen(check.reached[index]),
+            miss=float(check.misses[index]),
+            within_tolerance=check.within_tolerance[index],
+            clearance=float(check.clearances[index]),
+            joints=frozen(joints[0]),
+            alternatives=frozen(joints[1:]),
         )
-    return tuple(results)
+        for index, (target, joints) in enumerate(
+            zip(task.targets, joints_reaching(task, design), strict=True)
+        )
+    )

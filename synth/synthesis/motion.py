@@ -1,0 +1,253 @@
+"""How the arm gets from each target to the next: within its joint limits, clear of everything.
+
+A way is straight in the two joint angles, or a few straight pieces where something is in between. That
+each piece is clear is certain, by the bounds of `ArmBody`; that there is no way is not.
+"""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.arrays import FloatArray, frozen
+from synth.geometry import Box
+from synth.robot import CLEAR, ArmBody, turned
+from synth.synthesis.solution import joints_reaching
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from synth.geometry import Solid
+    from synth.synthesis.solution import Design
+    from synth.task import Task
+
+MOST_MOTIONS = 50  # of more targets nobody asks for the ways between them
+
+# The search for a way around: angles on a grid, samples of tube and rod, and the clearances to keep at these,
+# m, one after the other.
+_GRID = (91, 64)
+_SAMPLES = 24
+_MARGINS = (0.02, 0.008, 0.003)
+_STEP = 0.02  # rad, between postures that are looked at when a way is straightened
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """How the arm gets from one target to the next.
+
+    Attributes:
+        start: Name of the target that it leaves.
+        end: Name of the target that it gets to.
+        joints: Angles (theta1, theta2) that it passes, shape (k, 2), rad, straight in between: two for
+            a straight way, none if no way was found.
+    """
+
+    start: str
+    end: str
+    joints: FloatArray
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "joints", frozen(self.joints))
+
+    @property
+    def found(self) -> bool:
+        """Whether there is a way."""
+        return len(self.joints) > 0
+
+    def describe(self) -> str:
+        """Return which way, in degrees."""
+        if not self.found:
+            return f"{self.start} to {self.end}: no way was found that keeps clear"
+        change = np.degrees(self.joints[-1] - self.joints[0])
+        sentence = (
+            f"{self.start} to {self.end}: joint 1 by {change[0]:+z.1f} deg, joint 2 by {change[1]:+z.1f} deg"
+        )
+        if abs(change[0]) > 180.0:
+            sentence += " (the long way round: the short one is closed by the limits of joint 1)"
+        if len(self.joints) > 2:
+            via = ", ".join(f"({a:z.1f}, {b:z.1f})" for a, b in np.degrees(self.joints[1:-1]))
+            sentence += f", by way of {via} deg"
+        return sentence
+
+
+def motions(task: Task, design: Design) -> tuple[Motion, ...]:
+    """Return how the arm gets from each target to the next, in the order of the task.
+
+    Where a target is reached at several joint angles, those are taken that shorten the ways altogether.
+
+    Args:
+        task: The task.
+        design: The arm.
+
+    Returns:
+        One motion less than there are targets.
+    """
+    room = _Room(task, design)
+    postures = joints_reaching(task, design)
+    # To each posture of a target the best travel so far, rad, and the postures and ways that it takes.
+    best: list[tuple[float, list[FloatArray]]] = [(0.0, []) for _ in postures[0]]
+    for here, there in itertools.pairwise(postures):
+        ways = room.ways(here, there)
+        best = [
+            min(
+                (
+                    (travel + _length(ways[i, j]), [*taken, ways[i, j]])
+                    for i, (travel, taken) in enumerate(best)
+                ),
+                key=lambda each: each[0],
+            )
+            for j in range(len(there))
+        ]
+    _, chosen = min(best, key=lambda each: each[0])
+    names = [target.name for target in task.targets]
+    return tuple(Motion(*pair, way) for pair, way in zip(itertools.pairwise(names), chosen, strict=True))
+
+
+def _length(way: FloatArray) -> float:
+    """Return the travel of the joint that moves more, rad; where there is no way, more than any."""
+    if not len(way):
+        return 1e3
+    return float(np.abs(np.diff(way, axis=0)).max(axis=1).sum())
+
+
+class _Room:
+    """What an arm may bump into as its joints move."""
+
+    def __init__(self, task: Task, design: Design) -> None:
+        self._body = ArmBody(design.arm)
+        self._limits = task.robot.joint_limits
+        self._solids: list[Solid] = list(task.solids)
+        self._of_rod = list(self._solids)
+        if task.floor is not None:
+            # Joint 1 keeps all heights, so the tube stays where it is over the floor.
+            reach = 4.0 * (task.robot.d12 + design.arm.shape.length + self._body.rod_length)
+            self._of_rod.append(
+                Box(np.array([0.0, 0.0, task.floor - 0.5 * reach]), np.array([reach, reach, reach]))
+            )
+
+    def ways(self, here: FloatArray, there: FloatArray) -> dict[tuple[int, int], FloatArray]:
+        """Return a way between each posture of one target, (k, 2), and each of the next, (l, 2)."""
+        pairs = list(itertools.product(range(len(here)), range(len(there))))
+        start, end = np.array([here[i] for i, _ in pairs]), np.array([there[j] for _, j in pairs])
+        ways = {
+            pair: np.stack([a, b]) if clear else np.empty((0, 2))
+            for pair, clear, a, b in zip(pairs, self.clear(start, end), start, end, strict=True)
+        }
+        if not any(len(way) for way in ways.values()):
+            for pair, a, b in zip(pairs, start, end, strict=True):
+                ways[pair] = self._way_around(a, b)
+                if len(ways[pair]):
+                    break
+        return ways
+
+    def clear(self, start: FloatArray, end: FloatArray) -> NDArray[np.bool_]:
+        """Return whether straight ways, shape (n, 2), are certainly clear."""
+        body = self._body
+        least = body.from_obstacles(start, self._of_rod, end=end)
+        tube = least[:, : len(self._solids), 0].min(axis=1, initial=np.inf)
+        rod = least[..., 1].min(axis=1, initial=np.inf)
+        itself = body.rod_from_tube(start[:, 1], end[:, 1])
+        return np.asarray(np.minimum(np.minimum(tube, rod), itself) >= CLEAR)
+
+    def _way_around(self, start: FloatArray, end: FloatArray) -> FloatArray:
+        """Return a way through the grid, straightened, or none."""
+        first, second = self._limits.base, self._limits.second
+        theta1 = np.linspace(first.lower, first.upper, _GRID[0])
+        theta2 = np.linspace(second.lower, second.upper, _GRID[1])
+        grid = np.stack(np.meshgrid(theta1, theta2, indexing="ij"), axis=-1)
+        sampled = self._sampled_clearance(grid.reshape(-1, 2)).reshape(_GRID)
+        for margin in _MARGINS:
+            nodes = _shortest(sampled > margin, _node(grid, start), _node(grid, end))
+            if nodes is None:
+                continue
+            way = self._straightened(np.array([start, *(grid[node] for node in nodes), end]), margin)
+            if self.clear(way[:-1], way[1:]).all():
+                return way
+        return np.empty((0, 2))
+
+    def _straightened(self, way: FloatArray, margin: float) -> FloatArray:
+        """Return the way with as few corners as samples allow."""
+        kept, here = [way[0]], 0
+        while here < len(way) - 1:
+            for there in range(len(way) - 1, here, -1):
+                count = 2 + int(np.abs(way[there] - way[here]).max() / _STEP)
+                steps = way[here] + np.linspace(0.0, 1.0, count)[:, None] * (way[there] - way[here])
+                # At the targets themselves it may be narrower.
+                if there == here + 1 or (self._sampled_clearance(steps) > 0.5 * margin).all():
+                    break
+            kept.append(way[there])
+            here = there
+        return np.array(kept)
+
+    def _sampled_clearance(self, joints: FloatArray) -> FloatArray:
+        """Return about how far tube and rod keep from everything, at joint angles (N, 2), by samples."""
+        body = self._body
+        share = np.linspace(0.0, 1.0, _SAMPLES)
+        tube = body.tube(body.tube_radius + share * (body.arm.shape.length - body.tube_radius))
+        joint = min(body.arm.robot.link.diameter, body.rod_length)
+        rod = body.rod(joint + share * (body.rod_length - joint), joints[:, 1:])
+        apart = np.linalg.norm(rod[:, :, None] - tube[_before_the_joint(body, share)], axis=-1)
+        least = apart.min(axis=(1, 2)) - body.tube_radius - body.rod_radius
+        for points, radius, solids in (
+            (tube, body.tube_radius, self._solids),
+            (rod, body.rod_radius, self._of_rod),
+        ):
+            there = turned(points, joints[:, :1])
+            for solid in solids:
+                least = np.minimum(least, solid.distance(there).min(axis=1) - radius)
+        return np.asarray(least)
+
+
+def _before_the_joint(body: ArmBody, share: FloatArray) -> NDArray[np.intp]:
+    """Return which samples of the tube are farther than a diameter from the joint, one at least."""
+    clear = share * body.arm.shape.length <= body.arm.shape.length - body.arm.robot.link.diameter
+    return np.flatnonzero(clear)
+
+
+def _node(grid: FloatArray, joints: FloatArray) -> tuple[int, int]:
+    nearest = np.unravel_index(np.argmin(np.abs(grid - joints).max(axis=-1)), grid.shape[:2])
+    return int(nearest[0]), int(nearest[1])
+
+
+def _shortest(
+    free: NDArray[np.bool_], start: tuple[int, int], end: tuple[int, int]
+) -> list[tuple[int, int]] | None:
+    """Return the shortest path through free nodes of a grid and its diagonals, by Dijkstra's algorithm.
+
+    The ends count as free, and so do their neighbours: the arm gets away from a target as it got there.
+    """
+    free = free.copy()
+    for i, j in (start, end):
+        free[max(i - 1, 0) : i + 2, max(j - 1, 0) : j + 2] = True
+    distance, before = {start: 0.0}, {start: start}
+    queue = [(0.0, start)]
+    while queue:
+        travelled, node = heapq.heappop(queue)
+        if node == end:
+            path = [node]
+            while path[-1] != start:
+                path.append(before[path[-1]])
+            return path[::-1]
+        if travelled > distance[node]:
+            continue
+        for neighbour in _neighbours(node, free):
+            length = travelled + math.hypot(neighbour[0] - node[0], neighbour[1] - node[1])
+            if length < distance.get(neighbour, math.inf):
+                distance[neighbour], before[neighbour] = length, node
+                heapq.heappush(queue, (length, neighbour))
+    return None
+
+
+def _neighbours(node: tuple[int, int], free: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
+    for i, j in itertools.product((-1, 0, 1), repeat=2):
+        neighbour = node[0] + i, node[1] + j
+        inside = 0 <= neighbour[0] < free.shape[0] and 0 <= neighbour[1] < free.shape[1]
+        if (i or j) and inside and free[neighbour]:
+            yield neighbour

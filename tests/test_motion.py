@@ -1,0 +1,76 @@
+import numpy as np
+import pytest
+from planted import ROBOT, planted_task
+from planted_obstacles import SCENES, brute_clearance, planted_with_obstacles
+
+from synth.geometry import Box
+from synth.synthesis import motions, verify
+from synth.synthesis.solution import Design
+from synth.task import Obstacle
+
+
+def along(way):
+    steps = [a + np.linspace(0, 1, 15)[:, None] * (b - a) for a, b in zip(way[:-1], way[1:], strict=True)]
+    return np.vstack(steps)
+
+
+@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("seed", [2, 3])
+def test_ways_keep_clear_and_within_the_limits(scene, seed):
+    task, arm, joints = planted_with_obstacles(scene, seed)
+    ways = motions(task, Design(arm, verify(task, arm, joints)))
+    assert len(ways) == len(task.targets) - 1
+    assert any(way.found for way in ways)
+    for way, target, following in zip(ways, task.targets[:-1], task.targets[1:], strict=True):
+        assert (way.start, way.end) == (target.name, following.name)
+        if way.found:
+            assert ROBOT.joint_limits.contain(way.joints).all()
+            ends = arm.forward_kinematics(*way.joints[[0, -1]].T)
+            assert (
+                np.linalg.norm(ends - [target.position, following.position], axis=1).max() < target.tolerance
+            )
+            solids = [obstacle.solid for obstacle in task.obstacles]
+            assert brute_clearance(arm, along(way.joints), solids) >= -2e-6
+
+
+def test_each_way_begins_where_the_last_one_ended():
+    task, arm = planted_task(5, 8)
+    ways = motions(task, Design(arm, verify(task, arm)))
+    for one, other in zip(ways[:-1], ways[1:], strict=True):
+        assert one.joints[-1] == pytest.approx(other.joints[0])
+
+
+def test_the_long_way_round_is_said():
+    task, arm = planted_task(5, 2)
+    joints = np.radians([[20.0, 170.0], [340.0, 190.0]])
+    from dataclasses import replace
+
+    points = arm.forward_kinematics(*joints.T)
+    targets = tuple(replace(t, position=p) for t, p in zip(task.targets, points, strict=True))
+    task = replace(task, targets=targets)
+    (way,) = motions(task, Design(arm, verify(task, arm, joints)))
+    assert way.found
+    assert way.describe() == (
+        "target 1 to target 2: joint 1 by +320.0 deg, joint 2 by +20.0 deg "
+        "(the long way round: the short one is closed by the limits of joint 1)"
+    )
+
+
+def test_a_wall_right_round_a_target_leaves_no_way():
+    task, arm = planted_task(5, 2)
+    check = verify(task, arm)
+    from dataclasses import replace
+
+    # A plate that the arm cannot pass between its two postures, above the floor and up to the sky.
+    half = 0.5 * (check.joints[0, 0] + check.joints[1, 0])
+    normal = np.array([np.cos(half), np.sin(half), 0.0])
+    plate = Box(0.45 * normal + [0, 0, 1.0], np.array([0.6, 0.004, 2.0]), half)
+    task = replace(task, obstacles=(Obstacle("plate", plate),))
+    check = verify(task, arm)
+    assert check.found
+    (way,) = motions(task, Design(arm, check))
+    if way.found:  # then round the back, or folded up to pass before it
+        assert brute_clearance(arm, along(way.joints), [plate]) >= -2e-6
+        assert len(way.joints) > 2
+    else:
+        assert way.describe() == "target 1 to target 2: no way was found that keeps clear"
