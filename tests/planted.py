@@ -24,7 +24,7 @@ def feasible(arm: Arm, floor: float = 0.0) -> bool:
     heights = arm.robot.d12 + shape.point_at(np.append(s, shape.length))[:, 2]
     return bool(
         link.length.contains(shape.length)
-        and shape.bends.max() <= link.max_curvature
+        and shape.bends.max() <= link.max_curvature * (1.0 + 1e-12)
         and shape.total_bend <= link.max_total_bend + 1e-12
         and heights.min() - 0.5 * link.diameter >= floor - 2e-6
         and arm.axis_points[2:, 2].min() >= floor

@@ -1,3 +1,6 @@
+import itertools
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from planted import ROBOT, planted_task
@@ -10,7 +13,7 @@ from synth.task import Obstacle
 
 
 def along(way):
-    steps = [a + np.linspace(0, 1, 15)[:, None] * (b - a) for a, b in zip(way[:-1], way[1:], strict=True)]
+    steps = [a + np.linspace(0, 1, 15)[:, None] * (b - a) for a, b in itertools.pairwise(way)]
     return np.vstack(steps)
 
 
@@ -36,15 +39,13 @@ def test_ways_keep_clear_and_within_the_limits(scene, seed):
 def test_each_way_begins_where_the_last_one_ended():
     task, arm = planted_task(5, 8)
     ways = motions(task, Design(arm, verify(task, arm)))
-    for one, other in zip(ways[:-1], ways[1:], strict=True):
+    for one, other in itertools.pairwise(ways):
         assert one.joints[-1] == pytest.approx(other.joints[0])
 
 
 def test_the_long_way_round_is_said():
     task, arm = planted_task(5, 2)
     joints = np.radians([[20.0, 170.0], [340.0, 190.0]])
-    from dataclasses import replace
-
     points = arm.forward_kinematics(*joints.T)
     targets = tuple(replace(t, position=p) for t, p in zip(task.targets, points, strict=True))
     task = replace(task, targets=targets)
@@ -59,8 +60,6 @@ def test_the_long_way_round_is_said():
 def test_a_wall_right_round_a_target_leaves_no_way():
     task, arm = planted_task(5, 2)
     check = verify(task, arm)
-    from dataclasses import replace
-
     # A plate that the arm cannot pass between its two postures, above the floor and up to the sky.
     half = 0.5 * (check.joints[0, 0] + check.joints[1, 0])
     normal = np.array([np.cos(half), np.sin(half), 0.0])

@@ -162,8 +162,5 @@ def _target_lines(targets: Sequence[TargetResult]) -> list[str]:
 
 def _clearance(clearance: float) -> str:
     """Return a clearance, which is told no farther than it was looked for."""
-    return (
-        f"{1e3 * clearance:.1f} mm"
-        if clearance < MOST_CLEARANCE - 1e-9
-        else f"{1e3 * clearance:.0f} mm and more"
-    )
+    least = clearance >= MOST_CLEARANCE - 1e-9
+    return f"{1e3 * clearance:.1f} mm" + (" at least" if least else "")
