@@ -159,21 +159,19 @@ class Solution:
 def target_results(task: Task, design: Design) -> tuple[TargetResult, ...]:
     """Return what becomes of each target of a task in one shape."""
     check = design.verification
-    results = []
-    for index, target in enumerate(task.targets):
-        branches = design.arm.inverse_kinematics(target.position)
-        reaching = branches.reaching(target.tolerance)
-        others = abs(reaching - check.joints[index]).max(axis=1) > 1e-3
-        results.append(
-            TargetResult(
-                name=target.name,
-                position=target.position,
-                tolerance=target.tolerance,
-                reached=frozen(check.reached[index]),
-                miss=float(check.misses[index]),
-                within_tolerance=check.within_tolerance[index],
-                joints=frozen(check.joints[index]),
-                alternatives=frozen(reaching[others]),
-            )
+    branches = design.arm.inverse_kinematics(task.base.to_task(task.positions))
+    different = np.abs(branches.joints - check.joints[:, None]).max(axis=-1) > 1e-3
+    others = different & (branches.miss <= task.tolerances[:, None])
+    return tuple(
+        TargetResult(
+            name=target.name,
+            position=target.position,
+            tolerance=target.tolerance,
+            reached=frozen(check.reached[index]),
+            miss=float(check.misses[index]),
+            within_tolerance=check.within_tolerance[index],
+            joints=frozen(check.joints[index]),
+            alternatives=frozen(branches.joints[index][others[index]]),
         )
-    return tuple(results)
+        for index, target in enumerate(task.targets)
+    )
