@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from synth.arrays import FloatArray, frozen
 from synth.errors import SynthError
 from synth.sentences import SentenceEnum

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import threading
 import time
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -13,7 +14,7 @@ import numpy as np
 from synth.errors import SolverError
 from synth.synthesis.exact_starts import exact_designs
 from synth.synthesis.impossibility import why_impossible
-from synth.synthesis.nlp import SynthesisNlp
+from synth.synthesis.nlp import Structure, SynthesisNlp, shared_nlp
 from synth.synthesis.population import ARCS
 from synth.synthesis.screening import Start, starts
 from synth.synthesis.separation import separations
@@ -130,7 +131,6 @@ class _Search:
     starts: int = 0
     starts_found: int = 0  # since a shape was found, that start included
     interrupted: bool = False
-    _free_nlp: SynthesisNlp | None = None  # of no planes
 
     def __post_init__(self) -> None:
         self._impossible = why_impossible(self.task)
@@ -196,7 +196,7 @@ class _Search:
             with self.clock.on("solving"):
                 planes = separations(self.task, arm, joints, itself=itself)
                 try:
-                    answer = self._nlp(planes).solve(arm, joints)
+                    answer = self._nlp(planes).solve(self.task, arm, joints, self._out_of_time)
                 except SolverError as error:
                     self.breakdowns.append(str(error))
                     return
@@ -212,11 +212,10 @@ class _Search:
                 return
 
     def _nlp(self, planes: Sequence[Separation]) -> SynthesisNlp:
+        structure = Structure.of(self.task)
         if planes:
-            return SynthesisNlp(self.task, ARCS, self._out_of_time, planes)
-        if self._free_nlp is None:
-            self._free_nlp = SynthesisNlp(self.task, ARCS, self._out_of_time)
-        return self._free_nlp
+            return SynthesisNlp(structure, ARCS, planes)
+        return shared_nlp(structure, ARCS, threading.get_ident())
 
     def _keep(self, arm: Arm, joints: FloatArray) -> Design:
         """Check a shape, keep it where it belongs, and return it."""
