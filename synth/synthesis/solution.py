@@ -161,7 +161,7 @@ class Solution:
 def target_results(task: Task, design: Design) -> tuple[TargetResult, ...]:
     """Return what becomes of each target of a task in one shape."""
     check = design.verification
-    branches = design.arm.inverse_kinematics(task.base.to_task(task.positions))
+    branches = design.arm.inverse_kinematics(task.table.positions)
     different = np.abs(branches.joints - check.joints[:, None]).max(axis=-1) > 1e-3
     others = different & (branches.miss <= task.tolerances[:, None])
     return tuple(
