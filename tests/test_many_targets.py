@@ -57,13 +57,13 @@ def test_the_fit_with_all_targets_is_better_than_with_the_part(scan):
     assert rms(solve(task).best.verification) < rms(verify(task, of_part))
 
 
-def test_the_worst_miss_is_lessened_by_exchange(scan):
-    task, _ = scan
+def test_the_worst_miss_is_levelled():
+    task, _ = scanned(1500, tolerance=2e-3)
     worst = {
         objective: solve(replace(task, objective=objective)).best.verification.misses.max()
         for objective in Objective
     }
-    assert worst[Objective.MINIMAX] < worst[Objective.LEAST_SQUARES]
+    assert worst[Objective.MINIMAX] < 0.95 * worst[Objective.LEAST_SQUARES]
 
 
 def test_a_target_out_of_reach_is_named_though_it_is_not_of_the_part(scan):

@@ -21,16 +21,14 @@ from synth.task import Objective
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.robot import Arm
-    from synth.synthesis.nlp import SynthesisNlp
     from synth.task import Task
 
-# That the nonlinear program knows all at once; with the worst miss it takes ten times as long.
+# That the nonlinear program knows all at once.
 _MOST_TARGETS = {Objective.LEAST_SQUARES: 100, Objective.MINIMAX: 40}
 _PART = 40  # of more targets, those that it knows
 # Steps with a larger part, and then with all.
 _SAMPLE, _STEPS, _STEPS_WITH_ALL = 2000, 8, 2
-# For the worst miss, the worst targets are exchanged for others of the part: so many, and so often.
-_EXCHANGED, _EXCHANGES = 15, 5
+_LAWSON_STEPS, _LEAST_SHARE = 25, 1e-6
 
 
 def part_of(task: Task, seed: int) -> Task:
@@ -40,8 +38,10 @@ def part_of(task: Task, seed: int) -> Task:
         task: The task.
         seed: The same part for the same seed.
     """
-    few = len(task.targets) <= _MOST_TARGETS[task.objective]
-    return task if few else _random_part(task, _PART, seed)
+    if len(task.targets) <= _MOST_TARGETS[task.objective]:
+        return task
+    # The worst miss of a part says little of the worst of all, and takes the program ten times as long.
+    return replace(_random_part(task, _PART, seed), objective=Objective.LEAST_SQUARES)
 
 
 def _random_part(task: Task, count: int, seed: int) -> Task:
@@ -67,28 +67,30 @@ def improved(task: Task, arm: Arm) -> Arm:
     return arm
 
 
-def exchanged(task: Task, part: Task, nlp: SynthesisNlp, arm: Arm) -> Arm:
-    """Return an arm whose worst miss over all targets is least, or nearly, by Remez' exchange.
+def levelled(task: Task, arm: Arm) -> Arm:
+    """Return an arm whose worst miss over all targets is less, by Lawson's weights.
 
-    The program knows some of the targets. Those that its answer misses most take the places of those of
-    its own that it misses least, and it is solved again.
+    A weighted sum of squares whose weights are multiplied by the misses again and again tends to the least
+    worst miss: its weights come to rest on the targets that decide (Lawson 1961). Those missed most of
+    all, up to the size of the larger part, stand for all.
 
     Args:
         task: The task with all its targets.
-        part: The task with some of them.
-        nlp: The program of the part.
-        arm: The robot in a shape that is best for the part.
+        arm: The robot in a shape near the best, of equal arcs.
     """
-    best, least = arm, np.inf
-    for _ in range(_EXCHANGES):
-        relative = _relative_misses(task, arm)
-        if relative.max() >= least:
-            break
-        best, least = arm, relative.max()
-        worst = np.argsort(-relative, kind="stable")[:_EXCHANGED]
-        known = np.argsort(-_relative_misses(part, arm), kind="stable")[:-_EXCHANGED]
-        part = replace(part, targets=task.table.take(worst).followed_by(part.table.take(known)))
-        arm = nlp.solve(part, arm, arm.closest_joints(part.table.positions)[0]).arm
+    best, least = arm, _relative_misses(task, arm)
+    worst = task.table.take(np.sort(np.argsort(-least, kind="stable")[:_SAMPLE]))
+    some = replace(task, targets=worst)
+    share = np.full(len(worst), 1.0)
+    for _ in range(_LAWSON_STEPS):
+        relative = _relative_misses(some, arm)
+        share = np.maximum(share * relative / relative.max(), _LEAST_SHARE)
+        weighted = replace(some, targets=replace(worst, weights=worst.weights * share))
+        theta2 = arm.closest_joints(worst.positions)[0][None, :, 1]
+        arm = refine(weighted, Population.of(arm), theta2, iterations=2).population.arm(0, task.base)
+        if _relative_misses(some, arm).max() < least.max():
+            misses = _relative_misses(task, arm)
+            best, least = (arm, misses) if misses.max() < least.max() else (best, least)
     return best
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from synth.errors import SolverError
 from synth.synthesis.exact_starts import exact_designs
 from synth.synthesis.impossibility import why_impossible
-from synth.synthesis.many_targets import exchanged, improved, part_of
+from synth.synthesis.many_targets import improved, levelled, part_of
 from synth.synthesis.nlp import Structure, SynthesisNlp, shared_nlp
 from synth.synthesis.population import ARCS
 from synth.synthesis.screening import Start, starts
@@ -236,10 +236,9 @@ class _Search:
         whole = []
         for design in designs[: max(1, _VERIFIED_AT_MOST // len(self.task.targets))]:
             with self.clock.on("solving"):
+                arm = improved(self.task, design.arm)
                 if self.task.objective is Objective.MINIMAX:
-                    arm = exchanged(self.task, self.part, self._nlp(()), design.arm)
-                else:
-                    arm = improved(self.task, design.arm)
+                    arm = levelled(self.task, arm)
             with self.clock.on("verifying"):
                 check = verify(self.task, arm)
                 # The steps know neither floor nor obstacles.
