@@ -12,6 +12,7 @@ from synth.guide import MARKERS, guide_text, make_guide, solution_text, summary_
 from synth.guide.guide import SPACING, hold_angle
 from synth.guide.sensitivity import ShapeTolerance, shape_tolerance, tilt_rate
 from synth.robot import PRESETS, Arm, BasePose, Interval, JointLimits, LinkShape
+from synth.robot.closest import closest_joints
 from synth.robot.kinematics import Kinematics
 from synth.synthesis import Design, Solution, Status, Timing, verify
 from synth.task import PointTarget, Task
@@ -121,11 +122,13 @@ def worst_excess(task, arm, shifts, tilts):
     angle = np.linalg.norm(tilts, axis=1)[:, None, None]
     cross = np.cross(np.eye(3), -(tilts[:, None] / np.maximum(angle, 1e-300)))
     turn = np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
+    radius = np.asarray(arm.circle.radius)
     centres = end + shifts + turn @ (arm.circle.centre - end)
-    kinematics = Kinematics((turn @ rotation)[:, None], centres[:, None], np.array([[arm.circle.radius]]))
-    points = np.broadcast_to(task.positions, (len(shifts), *task.positions.shape))
-    _, misses = kinematics.closest(points, arm.robot.joint_limits)
-    return (misses / task.tolerances).max()
+    misses = [
+        closest_joints(Kinematics(frame, centre, radius), task.positions, arm.robot.joint_limits)[1]
+        for frame, centre in zip(turn @ rotation, centres, strict=True)
+    ]
+    return (np.array(misses) / task.tolerances).max()
 
 
 def tilts_across(arm, count=180):

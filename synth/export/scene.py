@@ -72,7 +72,7 @@ class Scene:
             link, ghost = (1e3 * base.to_task(turn.to_task(centreline)) for turn in turns)
             rigid = np.stack([ghost[-1], 1e3 * check.reached[0]])
         return cls(
-            targets=1e3 * np.array([target.position for target in task.targets]),
+            targets=1e3 * task.table.positions,
             reached=reached,
             labels=labels,
             base=1e3 * base.to_task([[0.0, 0.0, 0.0], [0.0, 0.0, task.robot.d12]]),

@@ -59,19 +59,29 @@ def shape_tolerance(task: Task, design: Design) -> ShapeTolerance:
         task: What is asked.
         design: The shape and its misses. That the end effector stays above the floor is not counted.
     """
-    check = design.verification
-    shifts, tilts = [], []
-    for target, joints, miss, within in zip(
-        task.targets, check.joints, check.misses, check.within_tolerance, strict=True
-    ):
-        if within:
-            slack = target.tolerance - float(miss)
-            rate = tilt_rate(design.arm, target.position, joints)
-            shifts.append((slack, target.name))
-            tilts.append((min(slack / max(rate, _NO_RATE), _LARGEST_TILT), target.name))
-    if not shifts:
+    check, arm = design.verification, design.arm
+    within = np.flatnonzero(check.within_tolerance)
+    if not len(within):
         return ShapeTolerance()
-    return ShapeTolerance(*min(shifts), *min(tilts))
+    slack = task.tolerances - check.misses
+    within = within[np.argsort(slack[within], kind="stable")]
+    tilt, tilted = math.inf, within[0]
+    # No tilt moves P5 faster than at its distance from the link's end.
+    lever = float(np.linalg.norm(arm.kinematics.forward(0.0, 0.0) - arm.end_frame[1]))
+    for index in within.tolist():
+        if slack[index] >= min(tilt, _LARGEST_TILT) * lever:
+            break
+        rate = tilt_rate(arm, task.table.positions[index], check.joints[index])
+        bound = min(slack[index] / max(rate, _NO_RATE), _LARGEST_TILT)
+        if bound < tilt:
+            tilt, tilted = bound, index
+    first = int(within[0])
+    return ShapeTolerance(
+        float(slack[first]),
+        task.targets[first].name,
+        float(min(tilt, _LARGEST_TILT)),
+        task.targets[tilted].name,
+    )
 
 
 def tilt_rate(arm: Arm, target: FloatArray, joints: FloatArray) -> float:

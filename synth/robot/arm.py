@@ -19,7 +19,9 @@ from synth.geometry import (
     squared_distances,
 )
 from synth.robot.base import BasePose
-from synth.robot.kinematics import Kinematics, into_turn
+from synth.robot.closest import closest_joints
+from synth.robot.kinematics import Kinematics
+from synth.robot.turn import into_turn
 
 _SAME_BRANCH = 1e-5  # rad; branches nearer than this are one, met twice
 
@@ -188,4 +190,6 @@ class Arm:
         Returns:
             Angles (theta1, theta2), shape (..., 2), rad, and misses, shape (...), m.
         """
-        return self.kinematics.closest(self.base.to_base(points), self.robot.joint_limits)
+        point = self.base.to_base(points)
+        joints, misses = closest_joints(self.kinematics, point.reshape(-1, 3), self.robot.joint_limits)
+        return joints.reshape(*point.shape[:-1], 2), misses.reshape(point.shape[:-1])

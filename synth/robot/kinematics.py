@@ -7,18 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.robot.turn import into_turn, turned
+
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from synth.arrays import FloatArray
-    from synth.robot.hardware import Interval, JointLimits
+    from synth.robot.hardware import Interval
 
-# Over joint 2 the miss has few valleys, as it has few harmonics; the spacing of this grid is about
-# 2 deg. The golden section narrows each valley to 1e-5 rad, Newton's method to rounding.
-_GRID = 181
-_VALLEYS = 3
-_GOLDEN_STEPS = 18
-_GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 _NEWTON_STEPS = 6
 
 
@@ -41,12 +37,16 @@ class Kinematics:
 
     def forward(self, theta1: ArrayLike, theta2: ArrayLike) -> FloatArray:
         """Return P5 for joint angles, shape (...), rad; of shape (..., 3), m."""
-        turn, second = np.asarray(theta1, dtype=np.float64), np.asarray(theta2, dtype=np.float64)
+        second = np.asarray(theta2, dtype=np.float64)
         v, t = self.frame[..., 1], self.frame[..., 2]
         circle = np.sin(second)[..., None] * v - np.cos(second)[..., None] * t
-        x, y, z = np.moveaxis(self.centre + self.radius[..., None] * circle, -1, 0)
-        cos, sin = np.cos(turn), np.sin(turn)
-        return np.stack(np.broadcast_arrays(cos * x - sin * y, sin * x + cos * y, z), axis=-1)
+        return turned(theta1, self.centre + self.radius[..., None] * circle)
+
+    def tangent(self, theta2: FloatArray) -> FloatArray:
+        """Return the derivative of P5 by theta2 at theta1 = 0, shape (..., 3), m."""
+        v, t = self.frame[..., 1], self.frame[..., 2]
+        circle = np.cos(theta2)[..., None] * v + np.sin(theta2)[..., None] * t
+        return np.asarray(self.radius[..., None] * circle)
 
     def best_theta1(self, theta2: FloatArray, point: FloatArray, limits: Interval) -> FloatArray:
         """Return the theta1 within its limits that brings P5 closest to a point, theta2 given."""
@@ -122,58 +122,15 @@ class Kinematics:
     def velocities(self, joints: FloatArray, reached: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the derivatives of P5 by theta1 and by theta2, shape (..., 3), m.
 
-        Axis 1 sweeps P5 along (-y, x, 0); a quarter turn of joint 2 on is the tangent of its circle.
+        Axis 1 sweeps P5 along (-y, x, 0), joint 2 along the tangent of its circle.
 
         Args:
             joints: Angles (theta1, theta2), shape (..., 2), rad.
             reached: P5 at these angles, shape (..., 3), m.
         """
         by_theta1 = reached[..., [1, 0, 2]] * np.array([-1.0, 1.0, 0.0])
-        opposite = self.forward(joints[..., 0], joints[..., 1] + np.pi)
-        quarter = self.forward(joints[..., 0], joints[..., 1] + 0.5 * np.pi)
-        return by_theta1, quarter - 0.5 * (reached + opposite)
+        return by_theta1, turned(joints[..., 0], self.tangent(joints[..., 1]))
 
     def each_target(self) -> Kinematics:
         """Return the same with one more axis behind the leading ones, for the targets."""
         return Kinematics(self.frame[..., None, :, :], self.centre[..., None, :], self.radius[..., None])
-
-    def closest(self, point: FloatArray, limits: JointLimits) -> tuple[FloatArray, FloatArray]:
-        """Return the joint angles within the limits that come closest to points, and their misses.
-
-        Args:
-            point: Points, shape (..., 3), m; on the workspace or off it.
-            limits: The joint limits.
-
-        Returns:
-            Angles (theta1, theta2), shape (..., 2), rad, and misses, shape (...), m.
-        """
-        one = self.each_target()
-        point = point[..., None, :]
-        second = limits.second
-        grid = np.linspace(second.lower, second.upper, _GRID)
-        misses = one.miss(grid, point, limits.base)
-        padded = np.pad(misses, [(0, 0)] * (misses.ndim - 1) + [(1, 1)], constant_values=np.inf)
-        valleys = (misses <= padded[..., :-2]) & (misses <= padded[..., 2:])
-        deepest = np.argsort(np.where(valleys, misses, np.inf), axis=-1)[..., :_VALLEYS]
-        lower, upper = grid[np.maximum(deepest - 1, 0)], grid[np.minimum(deepest + 1, _GRID - 1)]
-        for _ in range(_GOLDEN_STEPS):
-            span = _GOLDEN * (upper - lower)
-            left, right = upper - span, lower + span
-            left_is_better = one.miss(left, point, limits.base) < one.miss(right, point, limits.base)
-            lower, upper = np.where(left_is_better, lower, left), np.where(left_is_better, right, upper)
-        # The golden section comes near an end of the joint range, but never to it.
-        ends = np.broadcast_to([second.lower, second.upper], (*lower.shape[:-1], 2))
-        theta2 = np.concatenate([0.5 * (lower + upper), ends], axis=-1)
-        joints = np.stack([one.best_theta1(theta2, point, limits.base), theta2], axis=-1)
-        # Newton's method has the last word wherever it stays within the limits.
-        polished = one.polished(joints, point)
-        joints = np.where(limits.contain(polished, slack=0.0)[..., None], polished, joints)
-        misses = np.linalg.norm(one.forward(joints[..., 0], joints[..., 1]) - point, axis=-1)
-        best = np.argmin(misses, axis=-1)[..., None]
-        joints = np.take_along_axis(joints, best[..., None], axis=-2)[..., 0, :]
-        return joints, np.take_along_axis(misses, best, axis=-1)[..., 0]
-
-
-def into_turn(angle: FloatArray, middle: float) -> FloatArray:
-    """Return angles moved by whole turns to within half a turn of `middle`, rad."""
-    return np.asarray(middle + np.remainder(angle - middle + np.pi, 2.0 * np.pi) - np.pi)

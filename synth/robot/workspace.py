@@ -12,7 +12,7 @@ import numpy as np
 from synth.arrays import FloatArray, frozen
 from synth.geometry import critical_angles, sampling_angles
 from synth.robot.hardware import Interval, JointLimits
-from synth.robot.kinematics import into_turn
+from synth.robot.turn import into_turn
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

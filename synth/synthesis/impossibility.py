@@ -10,9 +10,12 @@ import numpy as np
 from synth.robot import LinkReach
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from synth.robot import Robot
     from synth.task import Task
 
+_DIRECTIONS = 12  # in which points of the reach are tried
 _ROUNDING = 1e-8  # m, many times what the margin of the reach has
 
 
@@ -54,17 +57,25 @@ def why_impossible(task: Task) -> tuple[str, ...]:
         reasons.append(f"the link starts at P2, {1e3 * (task.floor - task.robot.d12):.1f} mm below the floor")
     reasons += _in_the_way(task)
     longest = longest_rigid_link(task.robot)
-    beyond = -LinkReach(task.robot.link).margin(task.positions - np.array([0.0, 0.0, task.robot.d12]))
-    for target, position, distance in zip(task.targets, task.positions, beyond.tolist(), strict=True):
-        if distance > longest + target.tolerance + _ROUNDING:
+    positions, tolerances, targets = task.positions, task.tolerances, task.targets
+    beyond = np.full(len(positions), -math.inf)
+    far = _perhaps_out_of_reach(task, longest)
+    seen = positions[far] - np.array([0.0, 0.0, task.robot.d12])
+    beyond[far] = -LinkReach(task.robot.link).margin(seen)
+    floor = -math.inf if task.floor is None else task.floor
+    out_of_reach = beyond > longest + tolerances + _ROUNDING
+    sunk = positions[:, 2] < floor - tolerances
+    for index in np.flatnonzero(out_of_reach | sunk).tolist():
+        name, distance = targets[index].name, float(beyond[index])
+        if out_of_reach[index]:
             reasons.append(
-                f"{target.name} is {1e3 * distance:.1f} mm from wherever the malleable link can end, "
+                f"{name} is {1e3 * distance:.1f} mm from wherever the malleable link can end, "
                 f"and the rigid link reaches at most {1e3 * longest:.1f} mm from there: "
                 f"it misses by at least {1e3 * (distance - longest):.1f} mm"
             )
-        elif task.floor is not None and position[2] < task.floor - target.tolerance:
+        else:
             reasons.append(
-                f"{target.name} is {1e3 * (task.floor - position[2]):.1f} mm below the floor, and the "
+                f"{name} is {1e3 * (floor - positions[index, 2]):.1f} mm below the floor, and the "
                 "end effector stays above it"
             )
     return tuple(reasons)
@@ -84,10 +95,23 @@ def _in_the_way(task: Task) -> list[str]:
         if depth > _ROUNDING:
             reasons.append(f"the link starts at P2, {1e3 * depth:.1f} mm inside {obstacle.name}")
         depths = rod_radius - solid.distance(task.positions)
-        for target, inside in zip(task.targets, depths.tolist(), strict=True):
-            if inside > target.tolerance + _ROUNDING:
-                reasons.append(
-                    f"{target.name} is in {obstacle.name}: "
-                    f"the end effector would be {1e3 * inside:.1f} mm inside"
-                )
+        reasons += [
+            f"{task.targets[index].name} is in {obstacle.name}: "
+            f"the end effector would be {1e3 * depths[index]:.1f} mm inside"
+            for index in np.flatnonzero(depths > task.tolerances + _ROUNDING).tolist()
+        ]
     return reasons
+
+
+def _perhaps_out_of_reach(task: Task, longest: float) -> NDArray[np.intp]:
+    """Return the indices of targets that no point tried of the link's reach is near enough to.
+
+    It is quickly said whether a point is in the reach, slowly how far it is from it.
+    """
+    reach, step = LinkReach(task.robot.link), 0.999 * longest
+    x, y, z = task.positions.T
+    seen, left = np.column_stack([np.hypot(x, y), 0.0 * x, z - task.robot.d12]), np.arange(len(x))
+    for angle in np.linspace(0.0, 2.0 * np.pi, _DIRECTIONS, endpoint=False):
+        tried = seen[left] + step * np.array([np.cos(angle), 0.0, np.sin(angle)])
+        left = left[~reach.contains(tried)]
+    return left

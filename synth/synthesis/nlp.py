@@ -27,6 +27,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import casadi as ca
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from synth.arrays import FloatArray
+    from synth.robot import Robot
     from synth.synthesis.separation import Separation
     from synth.task import Task
 
@@ -125,32 +127,64 @@ class _Piece:
     thickness: ca.SX
 
 
+@dataclass(frozen=True)
+class Structure:
+    """What tasks have in common that are solved by one program; all else it gets as parameters.
+
+    Attributes:
+        robot: The hardware.
+        count: Number n of targets.
+        has_floor: Whether there is a floor, at whatever height.
+        topology: Kind of shape asked for.
+        objective: Norm of the misses.
+    """
+
+    robot: Robot
+    count: int
+    has_floor: bool
+    topology: Topology
+    objective: Objective
+
+    @classmethod
+    def of(cls, task: Task) -> Structure:
+        """Return the structure of a task."""
+        return cls(task.robot, len(task.targets), task.floor is not None, task.topology, task.objective)
+
+
+@lru_cache(maxsize=16)
+def shared_nlp(structure: Structure, arcs: int, thread: int) -> SynthesisNlp:
+    """Return the program of a structure, without planes: to build it takes as long as three solves.
+
+    A solver holds the iterates of its run, and two threads in one solver crash the interpreter. So the
+    calling thread, `threading.get_ident()`, is part of the key: each thread has programs of its own.
+    Nothing is remembered from one solve to the next; it only saves the time to build the same again.
+    """
+    del thread
+    return SynthesisNlp(structure, arcs)
+
+
 class SynthesisNlp:
-    """The program of one task, built once and solved from many starts.
+    """The program of tasks of one structure, built once and solved from many starts.
 
     Args:
-        task: The task.
+        structure: What the tasks have in common.
         arcs: Number m of equal arcs of the link, a divisor of PIECES.
-        stop: Asked once an iteration; when it says yes, the solver ends with what it has.
         planes: What keeps the arm apart from obstacles and from itself.
     """
 
-    def __init__(
-        self,
-        task: Task,
-        arcs: int,
-        stop: Callable[[], bool] | None = None,
-        planes: Sequence[Separation] = (),
-    ) -> None:
-        self._task = task
+    def __init__(self, structure: Structure, arcs: int, planes: Sequence[Separation] = ()) -> None:
+        self._structure = structure
         self._arcs = arcs
-        robot, count = task.robot, len(task.targets)
+        robot, count = structure.robot, structure.count
         self._x, self._g = _Block(), _Block()
         x = self._x
+        positions = ca.SX.sym("positions", count, 3)
+        weights = ca.SX.sym("weights", count)  # over the squared tolerances
+        self._floor = ca.SX.sym("floor")
+        steepest = ca.SX.sym("steepest")
 
         curvature = x.unknown("curvature", (2, arcs), -1.0, 1.0)
         length = x.unknown("length", (1, 1), robot.link.length.lower, robot.link.length.upper)
-        self._floor = -math.inf if task.floor is None else task.floor
         pieces, position, frame = self._link(curvature, length)
         u, v, t = frame[:, 0], frame[:, 1], frame[:, 2]
         p3 = position - robot.tip_offset * u
@@ -176,7 +210,7 @@ class SynthesisNlp:
         reached = ca.horzcat(
             ca.cos(theta1) * px - ca.sin(theta1) * py, ca.sin(theta1) * px + ca.cos(theta1) * py, pz
         )
-        self._equal(reached - ca.DM(task.positions) - miss)
+        self._equal(reached - positions - miss)
         self._above_floor(pz - 0.5 * robot.rigid_link.diameter)
         self._overlaps = len(planes) and count + 1
         overlap = x.unknown("overlap", (self._overlaps, 1), 0.0, math.inf)
@@ -184,22 +218,26 @@ class SynthesisNlp:
         for plane in planes:
             self._keep_apart(plane, pieces, tip, theta1, overlap)
 
-        weighted = ca.sum2(miss**2) * ca.DM(task.weights / task.tolerances**2)
-        if task.objective is Objective.MINIMAX:
+        weighted = ca.sum2(miss**2) * weights
+        if structure.objective is Objective.MINIMAX:
             misses = x.unknown("worst", (1, 1), 0.0, math.inf)
             self._g.add(weighted - misses, -math.inf, 0.0)
         else:
             misses = ca.sum1(weighted)
         bending_energy = ca.sumsqr(curvature) * length / (arcs * robot.link.min_bend_radius)
-        steepest = 2.0 * _LARGE_MISS * _OVERLAP_UNIT * float(np.max(task.weights / task.tolerances**2))
-        self._solver = self._build(misses + _GENTLENESS * bending_energy + steepest * ca.sum1(overlap), stop)
+        objective = misses + _GENTLENESS * bending_energy + steepest * ca.sum1(overlap)
+        self._solver = self._build(objective, ca.vertcat(ca.vec(positions), weights, self._floor, steepest))
 
-    def solve(self, start: Arm, joints: FloatArray) -> NlpAnswer:
+    def solve(
+        self, task: Task, start: Arm, joints: FloatArray, stop: Callable[[], bool] | None = None
+    ) -> NlpAnswer:
         """Polish a shape.
 
         Args:
+            task: The task, of this structure.
             start: The robot in a shape of `arcs` equal arcs.
             joints: Joint angles for each target to start from, shape (n, 2), rad.
+            stop: Asked once an iteration; when it says yes, the solver ends with what it has.
 
         Returns:
             Where the solver stopped, whether or not that is any good.
@@ -208,13 +246,18 @@ class SynthesisNlp:
             SolverError: The solver broke down without an answer.
             KeyboardInterrupt: The user interrupted the solver (which swallows the exception).
         """
+        weights = task.weights / task.tolerances**2
+        floor, steepest = task.floor or 0.0, 2.0 * _LARGE_MISS * _OVERLAP_UNIT * float(weights.max())
+        self._watch.stop = stop
         x = self._solver(
-            x0=self._pack(start, joints),
+            x0=self._pack(task, start, joints),
+            p=np.concatenate([task.positions.T.ravel(), weights, [floor, steepest]]),
             lbx=np.concatenate(self._x.lower),
             ubx=np.concatenate(self._x.upper),
             lbg=np.concatenate(self._g.lower),
             ubg=np.concatenate(self._g.upper),
         )["x"]
+        self._watch.stop = None
         statistics = self._solver.stats()
         status = str(statistics["return_status"])
         if status == "NonIpopt_Exception_Thrown":
@@ -222,10 +265,10 @@ class SynthesisNlp:
         values = np.asarray(x.full()).ravel()
         if status not in _ANSWERS or not np.isfinite(values).all():
             raise SolverError(f"Ipopt ended with {status}")
-        arm, found_joints = self._unpack(values)
+        arm, found_joints = self._unpack(task, values)
         return NlpAnswer(arm, found_joints, status, int(statistics["iter_count"]))
 
-    def _build(self, objective: ca.SX, stop: Callable[[], bool] | None) -> ca.Function:
+    def _build(self, objective: ca.SX, parameters: ca.SX) -> ca.Function:
         x, g = ca.vertcat(*self._x.expressions), ca.vertcat(*self._g.expressions)
         options: dict[str, Any] = {
             "print_time": False,
@@ -239,18 +282,17 @@ class SynthesisNlp:
         if self._overlaps:
             # From a shape that is nearly clear short first steps lead to a clear one; long ones lose it.
             options |= {"ipopt.mu_init": 1e-4} | dict.fromkeys(_PUSHES, 1e-5)
-        if stop is not None:
-            # The solver keeps no reference to its callback: this object must.
-            self._watch = _Watch(x.numel(), g.numel(), stop)
-            options["iteration_callback"] = self._watch
-        return ca.nlpsol("synthesis", "ipopt", {"x": x, "f": objective, "g": g}, options)
+        # The solver keeps no reference to its callback: this object must.
+        self._watch = options["iteration_callback"] = _Watch(x.numel(), g.numel(), parameters.numel())
+        problem = {"x": x, "p": parameters, "f": objective, "g": g}
+        return ca.nlpsol("synthesis", "ipopt", problem, options)
 
     def _equal(self, expression: ca.SX) -> None:
         self._g.add(expression, 0.0, 0.0)
 
     def _above_floor(self, height: ca.SX) -> None:
-        if self._floor > -math.inf:
-            self._g.add(height, self._floor, math.inf)
+        if self._structure.has_floor:
+            self._g.add(height - self._floor, 0.0, math.inf)
 
     def _link(self, curvature: ca.SX, length: ca.SX) -> tuple[dict[int, _Piece], ca.SX, ca.SX]:
         """Follow the arcs from P2 to the link's end, under the limits of bending and the floor.
@@ -258,7 +300,7 @@ class SynthesisNlp:
         Returns:
             The pieces of the tube, position and frame of the link's end.
         """
-        robot = self._task.robot
+        robot = self._structure.robot
         link, radius = robot.link, 0.5 * robot.link.diameter
         position: ca.SX = ca.SX([0.0, 0.0, robot.d12])
         frame: ca.SX = ca.SX.eye(3)
@@ -312,7 +354,7 @@ class SynthesisNlp:
 
     def _rod(self, plane: Separation, last: _Piece, tip: ca.SX) -> _Piece:
         """Return the rigid link; where it is kept apart from the tube, without the joint's diameter."""
-        robot = self._task.robot
+        robot = self._structure.robot
         start, end = last.ends[-1], tip[plane.target, :].T
         if plane.other is not None:
             along = end - start
@@ -321,7 +363,7 @@ class SynthesisNlp:
 
     def _end_effector_circle(self) -> tuple[ca.SX, ca.SX]:
         """Return offset along axis 2 and radius of P5's circle; free rigid links get s35 and s45."""
-        robot, rigid = self._task.robot, self._task.robot.rigid_link
+        robot, rigid = self._structure.robot, self._structure.robot.rigid_link
         if rigid.is_fixed:
             fixed_offset, fixed_radius = robot.end_effector_circle(rigid.d35.lower, rigid.d45.lower)
             return ca.SX(fixed_offset), ca.SX(fixed_radius)
@@ -340,8 +382,8 @@ class SynthesisNlp:
         def from_axis_2(point: ca.DM) -> ca.SX:
             return ca.vertcat(ca.dot(position - point, v), ca.dot(position - point, t))
 
-        p1, p2 = ca.DM.zeros(3), ca.DM([0.0, 0.0, self._task.robot.d12])
-        match self._task.topology:
+        p1, p2 = ca.DM.zeros(3), ca.DM([0.0, 0.0, self._structure.robot.d12])
+        match self._structure.topology:
             case Topology.SPHERICAL:
                 self._equal(from_axis_2(p1))
             case Topology.PUMA:
@@ -355,9 +397,8 @@ class SynthesisNlp:
             case Topology.ANY:
                 pass
 
-    def _pack(self, arm: Arm, joints: FloatArray) -> FloatArray:
+    def _pack(self, task: Task, arm: Arm, joints: FloatArray) -> FloatArray:
         """Return the unknowns of a shape, in the order in which they were made."""
-        task = self._task
         radius = task.robot.link.min_bend_radius
         misses = arm.base.to_base(arm.forward_kinematics(joints[:, 0], joints[:, 1])) - task.positions
         squared = arm.squared_distances
@@ -380,10 +421,9 @@ class SynthesisNlp:
         offset, radius = arm.robot.end_effector_circle(arm.d35, arm.d45)
         return [arm.d35**2, arm.d45**2, float(offset) + arm.robot.tip_offset, float(radius)]
 
-    def _unpack(self, values: FloatArray) -> tuple[Arm, FloatArray]:
+    def _unpack(self, task: Task, values: FloatArray) -> tuple[Arm, FloatArray]:
         """Return the shape that the unknowns describe, rounded into the bounds of the hardware."""
-        task, arcs = self._task, self._arcs
-        robot, rigid = task.robot, task.robot.rigid_link
+        arcs, robot, rigid = self._arcs, task.robot, task.robot.rigid_link
         curvature, rest = values[: 2 * arcs].reshape(arcs, 2), values[2 * arcs :]
         # The solver may overstep a bound by its own tolerance, 1e-8.
         curvature = curvature / np.maximum(1.0, np.linalg.norm(curvature, axis=1))[:, None]
@@ -406,10 +446,11 @@ class SynthesisNlp:
 class _Watch(ca.Callback):
     """Asked by Ipopt once an iteration whether to go on."""
 
-    def __init__(self, unknowns: int, constraints: int, stop: Callable[[], bool]) -> None:
+    def __init__(self, unknowns: int, constraints: int, parameters: int) -> None:
         ca.Callback.__init__(self)
         self._rows = {"x": unknowns, "lam_x": unknowns, "f": 1, "g": constraints, "lam_g": constraints}
-        self._stop = stop
+        self._rows["lam_p"] = parameters
+        self.stop: Callable[[], bool] | None = None
         self.construct("watch", {})
 
     def get_n_in(self) -> int:
@@ -425,4 +466,4 @@ class _Watch(ca.Callback):
         return ca.Sparsity.dense(self._rows.get(ca.nlpsol_out(index), 0), 1)
 
     def eval(self, _arguments: Sequence[ca.DM]) -> list[int]:
-        return [int(self._stop())]
+        return [int(self.stop is not None and self.stop())]

@@ -54,6 +54,13 @@ class Population:
         unknowns = np.column_stack([curvatures.reshape(size, -1), *lengths])
         return cls(robot, into_limits(robot, unknowns))
 
+    @classmethod
+    def of(cls, arm: Arm) -> Population:
+        """Return the one shape of an arm, which is of ARCS equal arcs."""
+        curvatures = (arm.shape.curvatures * arm.robot.link.min_bend_radius).ravel()
+        rigid = [] if arm.robot.rigid_link.is_fixed else [arm.d35, arm.d45]
+        return cls(arm.robot, np.array([[*curvatures, arm.shape.length, *rigid]]))
+
     @property
     def curvatures(self) -> FloatArray:
         """Curvatures of the arcs, shape (..., ARCS, 2), 1/m."""

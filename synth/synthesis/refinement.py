@@ -40,7 +40,7 @@ class Refined:
     cost: FloatArray
 
 
-def refine(task: Task, population: Population, theta2: FloatArray) -> Refined:
+def refine(task: Task, population: Population, theta2: FloatArray, iterations: int = _ITERATIONS) -> Refined:
     """Improve shapes by damped Gauss-Newton steps, their limits and those of the joints observed.
 
     Each target keeps its own joint angles, which follow the shape: the residual is what is left of
@@ -50,6 +50,7 @@ def refine(task: Task, population: Population, theta2: FloatArray) -> Refined:
         task: The task.
         population: The starts, of shape (N,).
         theta2: Angle of joint 2 at which each start is nearest to each target, shape (N, n), rad.
+        iterations: Number of steps.
 
     Returns:
         The improved shapes.
@@ -58,7 +59,7 @@ def refine(task: Task, population: Population, theta2: FloatArray) -> Refined:
     weights = relative_weights(task)
     joints = with_theta1(task, population, theta2)
     cost, damping = _cost(task, population, joints, weights), np.full(len(theta2), 1e-3)
-    for _ in range(_ITERATIONS):
+    for _ in range(iterations):
         step, follow = _step(task, population, joints, weights, damping)
         moved = Population(task.robot, into_limits(task.robot, population.unknowns + step))
         # By how much the joints follow is only known to first order: theta1 is then set right.

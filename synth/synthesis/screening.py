@@ -74,7 +74,7 @@ def starts(task: Task, rng: np.random.Generator) -> Iterator[Start]:
     for start in _starts(_fewer_targets(task, rng), rng):
         joints = start.joints
         if len(joints) < len(task.targets):
-            joints, _ = start.arm.closest_joints([target.position for target in task.targets])
+            joints, _ = start.arm.closest_joints(task.table.positions)
         yield Start(start.arm, joints)
 
 
@@ -83,7 +83,7 @@ def _fewer_targets(task: Task, rng: np.random.Generator) -> Task:
     if len(task.targets) <= _MOST_TARGETS:
         return task
     chosen = np.sort(rng.choice(len(task.targets), _MOST_TARGETS, replace=False))
-    return replace(task, targets=tuple(task.targets[index] for index in chosen))
+    return replace(task, targets=task.table.take(chosen))
 
 
 def _starts(task: Task, rng: np.random.Generator) -> Iterator[Start]:

@@ -9,8 +9,8 @@ import numpy as np
 
 from synth.arrays import FloatArray, frozen
 from synth.errors import SynthError
-from synth.robot import CLEAR, ArmBody
 from synth.sentences import SentenceEnum
+from synth.synthesis.verification import clear_of_everything
 
 if TYPE_CHECKING:
     from synth.robot import Arm
@@ -173,20 +173,21 @@ def joints_reaching(task: Task, design: Design) -> list[FloatArray]:
     Returns:
         Pairs (theta1, theta2), shape (k, 2), rad; the closest alone where the target is missed.
     """
-    check, body = design.verification, ArmBody(design.arm)
-    joints = []
-    for index, target in enumerate(task.targets):
-        reaching = design.arm.inverse_kinematics(target.position).reaching(target.tolerance)
-        others = reaching[abs(reaching - check.joints[index]).max(axis=1) > 1e-3]
-        least = body.from_obstacles(others, task.solids).min(axis=(1, 2), initial=np.inf)
-        clear = np.minimum(least, body.rod_from_tube(others[:, 1])) >= CLEAR
-        joints.append(np.vstack([check.joints[index], others[clear & check.within_tolerance[index]]]))
-    return joints
+    check = design.verification
+    branches = design.arm.inverse_kinematics(task.table.positions)
+    other = np.abs(branches.joints - check.joints[:, None]).max(axis=-1) > 1e-3
+    other &= branches.miss <= task.tolerances[:, None]
+    other &= np.array(check.within_tolerance)[:, None]
+    other[other] = clear_of_everything(task, design.arm, branches.joints[other])
+    return [
+        np.vstack([joints, branches.joints[index][other[index]]]) for index, joints in enumerate(check.joints)
+    ]
 
 
 def target_results(task: Task, design: Design) -> tuple[TargetResult, ...]:
     """Return what becomes of each target of a task in one shape."""
     check = design.verification
+    joints = joints_reaching(task, design)
     return tuple(
         TargetResult(
             name=target.name,
@@ -196,10 +197,8 @@ def target_results(task: Task, design: Design) -> tuple[TargetResult, ...]:
             miss=float(check.misses[index]),
             within_tolerance=check.within_tolerance[index],
             clearance=float(check.clearances[index]),
-            joints=frozen(joints[0]),
-            alternatives=frozen(joints[1:]),
+            joints=frozen(joints[index][0]),
+            alternatives=frozen(joints[index][1:]),
         )
-        for index, (target, joints) in enumerate(
-            zip(task.targets, joints_reaching(task, design), strict=True)
-        )
+        for index, target in enumerate(task.targets)
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import threading
 import time
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -13,7 +14,8 @@ import numpy as np
 from synth.errors import SolverError
 from synth.synthesis.exact_starts import exact_designs
 from synth.synthesis.impossibility import why_impossible
-from synth.synthesis.nlp import SynthesisNlp
+from synth.synthesis.many_targets import improved, levelled, part_of
+from synth.synthesis.nlp import Structure, SynthesisNlp, shared_nlp
 from synth.synthesis.population import ARCS
 from synth.synthesis.screening import Start, starts
 from synth.synthesis.separation import separations
@@ -44,6 +46,8 @@ _SAME_SHAPE = 0.010
 # How often planes between the arm and obstacles are taken anew where the solver ended.
 _PLANES_ANEW = 5
 _GAINED = 0.9  # of the objective before: the least gain for which to go on
+# Targets of all shapes together that are looked at where the search knew only a part of them.
+_VERIFIED_AT_MOST = 20_000
 _REASONS = 3  # of a kind that are told
 _CLASHES = ("obstacle", "itself")
 
@@ -78,7 +82,8 @@ def solve(
     Returns:
         The solution, whatever was found; its status says what it is worth.
     """
-    search = _Search(task, seed, _Clock(time_limit), stop or _never, progress or _silent)
+    part = part_of(task, seed)
+    search = _Search(task, part, seed, _Clock(time_limit), stop or _never, progress or _silent)
     search.run()
     return search.solution()
 
@@ -117,9 +122,10 @@ class _Clock:
 
 @dataclass
 class _Search:
-    """One run of `solve`: the designs so far."""
+    """One run of `solve`: the designs so far, for the part of the task that is searched with."""
 
     task: Task
+    part: Task
     seed: int
     clock: _Clock
     stop: Callable[[], bool]
@@ -130,7 +136,6 @@ class _Search:
     starts: int = 0
     starts_found: int = 0  # since a shape was found, that start included
     interrupted: bool = False
-    _free_nlp: SynthesisNlp | None = None  # of no planes
 
     def __post_init__(self) -> None:
         self._impossible = why_impossible(self.task)
@@ -155,7 +160,7 @@ class _Search:
 
     def solution(self) -> Solution:
         """Rank what was found and say what it is worth."""
-        designs = _best_of(self.task, self.designs)
+        designs = self._for_all_targets(_best_of(self.part, self.designs))
         status, reasons = self._verdict(designs)
         misses = _what_misses(self.task, designs[0]) if designs else []
         message = ": ".join(filter(None, [status.sentence, "; ".join([*misses, *reasons])]))
@@ -164,7 +169,7 @@ class _Search:
         )
 
     def _start_points(self) -> Iterator[Start]:
-        candidates = starts(self.task, np.random.default_rng(self.seed))
+        candidates = starts(self.part, np.random.default_rng(self.seed))
         while True:
             with self.clock.on("screening"):
                 start = next(candidates, None)
@@ -194,9 +199,9 @@ class _Search:
         best = math.inf
         for _ in range(_PLANES_ANEW):
             with self.clock.on("solving"):
-                planes = separations(self.task, arm, joints, itself=itself)
+                planes = separations(self.part, arm, joints, itself=itself)
                 try:
-                    answer = self._nlp(planes).solve(arm, joints)
+                    answer = self._nlp(planes).solve(self.part, arm, joints, self._out_of_time)
                 except SolverError as error:
                     self.breakdowns.append(str(error))
                     return
@@ -205,25 +210,45 @@ class _Search:
             clashes = [v for v in design.verification.violations if v.limit.startswith(_CLASHES)]
             itself = itself or any(clash.limit == "itself" for clash in clashes)
             # Other planes may give way: as long as they do, or as something is in the way.
-            objective = _rank(self.task, design)[1]
+            objective = _rank(self.part, design)[1]
             done = not planes or objective > _GAINED * best or design.verification.found
             best = min(best, objective)
             if (done and not clashes) or self._out_of_time():
                 return
 
     def _nlp(self, planes: Sequence[Separation]) -> SynthesisNlp:
+        structure = Structure.of(self.part)
         if planes:
-            return SynthesisNlp(self.task, ARCS, self._out_of_time, planes)
-        if self._free_nlp is None:
-            self._free_nlp = SynthesisNlp(self.task, ARCS, self._out_of_time)
-        return self._free_nlp
+            return SynthesisNlp(structure, ARCS, planes)
+        return shared_nlp(structure, ARCS, threading.get_ident())
 
     def _keep(self, arm: Arm, joints: FloatArray) -> Design:
         """Check a shape, keep it where it belongs, and return it."""
         with self.clock.on("verifying"):
-            design = Design(arm, verify(self.task, arm, joints))
+            design = Design(arm, verify(self.part, arm, joints))
         (self.designs if design.verification.possible else self.blocked).append(design)
         return design
+
+    def _for_all_targets(self, designs: tuple[Design, ...]) -> tuple[Design, ...]:
+        """Return designs improved for all targets, and verified with them, in their order."""
+        if self.part is self.task:
+            return designs
+        whole = []
+        for design in designs[: max(1, _VERIFIED_AT_MOST // len(self.task.targets))]:
+            with self.clock.on("solving"):
+                arm = improved(self.task, design.arm)
+                if self.task.objective is Objective.MINIMAX:
+                    arm = levelled(self.task, arm)
+            with self.clock.on("verifying"):
+                check = verify(self.task, arm)
+                # The steps know neither floor nor obstacles.
+                if not check.possible:
+                    arm, check = design.arm, verify(self.task, design.arm)
+            if check.possible:
+                whole.append(Design(arm, check))
+            else:
+                self.blocked.append(Design(arm, check))
+        return _best_of(self.task, whole)
 
     def _found(self) -> bool:
         return any(design.verification.found for design in self.designs)
@@ -240,9 +265,12 @@ class _Search:
 def _what_misses(task: Task, design: Design) -> list[str]:
     """Return a sentence for each target that is not reached, the worst first, three at most."""
     check = design.verification
-    order = [int(i) for i in np.argsort(-check.misses / task.tolerances) if not check.within_tolerance[i]]
-    sentences = [f"{task.targets[i].name} misses by {1e3 * check.misses[i]:.2f} mm" for i in order]
-    return sentences if len(order) <= 3 else [*sentences[:3], f"and {len(order) - 3} more"]
+    order = np.argsort(-check.misses / task.tolerances)
+    order = order[~np.array(check.within_tolerance)[order]]
+    sentences = [
+        f"{task.targets[i].name} misses by {1e3 * check.misses[i]:.2f} mm" for i in order[:3].tolist()
+    ]
+    return sentences if len(order) <= 3 else [*sentences, f"and {len(order) - 3} more"]
 
 
 def _why_not_exact(task: Task) -> tuple[str, ...]:

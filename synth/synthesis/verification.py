@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 # What rounding may do: a micrometre, a microradian.
 _LENGTH_SLACK = 1e-6
 _ANGLE_SLACK = 1e-6
+_TOGETHER = 2000  # joint angles whose clearances are looked at together
 
 
 @dataclass(frozen=True)
@@ -88,7 +89,7 @@ def verify(task: Task, arm: Arm, joints: FloatArray | None = None) -> Verificati
     Returns:
         The misses by forward kinematics and every limit that is broken.
     """
-    targets = np.array([target.position for target in task.targets])
+    targets = task.table.positions
     closest, _ = arm.closest_joints(targets)
     branches = arm.inverse_kinematics(targets)
     given = [] if joints is None else [joints]
@@ -97,14 +98,21 @@ def verify(task: Task, arm: Arm, joints: FloatArray | None = None) -> Verificati
     misses = np.linalg.norm(points - targets, axis=-1)
     misses[-2:][np.isinf(branches.miss.T)] = np.inf  # beyond the joint limits, or no branch at all
     floor = -math.inf if task.floor is None else task.floor
-    room = _Room.of(task, arm, candidates)
-    lowest = arm.base.to_base(points)[..., 2] - ArmBody(arm).rod_radius
-    blocked = (lowest < floor - _LENGTH_SLACK) | (room.least < -_LENGTH_SLACK)
-    best = np.argmin(np.where(blocked, np.inf, misses), axis=0)
-    chosen = best, np.arange(len(targets))
-    reached, misses = points[chosen], misses[chosen]
-    within = (misses <= task.tolerances) & ~blocked[chosen]
-    room = room.chosen(best)
+    sunk = arm.base.to_base(points)[..., 2] - ArmBody(arm).rod_radius < floor - _LENGTH_SLACK
+    misses = np.where(sunk, np.inf, misses)
+    # The nearest candidate is mostly the one; the others are looked at where it is in the way of something.
+    each, best = np.arange(len(targets)), np.argmin(misses, axis=0)
+    room = _Room.of(task, arm, candidates[best, each])
+    stuck = np.flatnonzero(~(room.least >= -_LENGTH_SLACK))
+    if len(stuck):
+        room_of_all = _Room.of(task, arm, candidates[:, stuck])
+        blocked = room_of_all.least < -_LENGTH_SLACK
+        best[stuck] = np.argmin(np.where(blocked, np.inf, misses[:, stuck]), axis=0)
+        room = room.replaced(stuck, room_of_all.chosen(best[stuck]))
+    chosen = best, each
+    reached, blocked = points[chosen], sunk[chosen] | ~(room.least >= -_LENGTH_SLACK)
+    misses = np.linalg.norm(reached - targets, axis=-1)
+    within = (misses <= task.tolerances) & ~blocked
     return Verification(
         joints=frozen(candidates[chosen]),
         reached=frozen(reached),
@@ -141,9 +149,16 @@ class _Room:
     @classmethod
     def of(cls, task: Task, arm: Arm, candidates: FloatArray) -> _Room:
         """Return the room about an arm at joint angles, shape (..., n, 2), rad."""
-        body, joints, shape = ArmBody(arm), candidates.reshape(-1, 2), candidates.shape[:-1]
-        from_obstacles = body.from_obstacles(joints, task.solids).reshape(*shape, -1, 2)
-        return cls(from_obstacles, body.rod_from_tube(joints[:, 1]).reshape(shape), body.tube_from_itself())
+        body, shape = ArmBody(arm), candidates.shape[:-1]
+        joints = candidates.reshape(-1, 2)
+        parts = np.split(joints, range(_TOGETHER, len(joints), _TOGETHER))
+        from_obstacles = np.concatenate([body.from_obstacles(part, task.solids) for part in parts])
+        rod_from_tube = np.concatenate([body.rod_from_tube(part[:, 1]) for part in parts])
+        return cls(
+            from_obstacles.reshape(*shape, len(task.solids), 2),
+            rod_from_tube.reshape(shape),
+            body.tube_from_itself(),
+        )
 
     @property
     def least(self) -> FloatArray:
@@ -155,6 +170,17 @@ class _Room:
         """Return the room at one candidate for each target, shape (n,)."""
         index = best, np.arange(len(best))
         return _Room(self.from_obstacles[index], self.rod_from_tube[index], self.tube_from_itself)
+
+    def replaced(self, some: NDArray[np.intp], other: _Room) -> _Room:
+        """Return the room with that of some targets replaced."""
+        from_obstacles, rod_from_tube = self.from_obstacles.copy(), self.rod_from_tube.copy()
+        from_obstacles[some], rod_from_tube[some] = other.from_obstacles, other.rod_from_tube
+        return _Room(from_obstacles, rod_from_tube, self.tube_from_itself)
+
+
+def clear_of_everything(task: Task, arm: Arm, joints: FloatArray) -> NDArray[np.bool_]:
+    """Return whether an arm at joint angles, shape (n, 2), rad, keeps clear of obstacles and of itself."""
+    return np.asarray(_Room.of(task, arm, joints).least >= -_LENGTH_SLACK)
 
 
 def _exceeds(limit: str, value: float, bound: float, slack: float, sentence: str) -> list[Violation]:
@@ -256,15 +282,15 @@ def _topology_violations(task: Task, arm: Arm) -> list[Violation]:
 def _obstacle_violations(task: Task, room: _Room) -> list[Violation]:
     """Check that tube and rod keep clear of the obstacles at each target: one violation for each."""
     violations = []
-    for target, clearances in zip(task.targets, room.from_obstacles, strict=True):
-        if not clearances.size:
-            return []
+    least = room.from_obstacles.min(axis=(-2, -1), initial=math.inf)
+    for index in np.flatnonzero(~(least >= -_LENGTH_SLACK)).tolist():
+        clearances = room.from_obstacles[index]
         worst, part = np.unravel_index(np.argmin(clearances), clearances.shape)
         obstacle, depth = task.obstacles[worst].name, -float(clearances[worst, part])
         violations += _exceeds(
             f"obstacle: {obstacle}", depth, 0.0, _LENGTH_SLACK,
-            f"at {target.name} the {('malleable', 'rigid')[part]} link would be {1e3 * depth:.2f} mm "
-            f"inside {obstacle}",
+            f"at {task.targets[index].name} the {('malleable', 'rigid')[part]} link would be "
+            f"{1e3 * depth:.2f} mm inside {obstacle}",
         )  # fmt: skip
     return violations
 
@@ -274,9 +300,10 @@ def _self_violations(task: Task, room: _Room) -> list[Violation]:
         "itself", -room.tube_from_itself, 0.0, _LENGTH_SLACK,
         f"the malleable link would be {-1e3 * room.tube_from_itself:.2f} mm inside itself or the base",
     )  # fmt: skip
-    for target, clearance in zip(task.targets, room.rod_from_tube.tolist(), strict=True):
+    for index in np.flatnonzero(~(room.rod_from_tube >= -_LENGTH_SLACK)).tolist():
+        name, depth = task.targets[index].name, -float(room.rod_from_tube[index])
         violations += _exceeds(
-            "itself", -clearance, 0.0, _LENGTH_SLACK,
-            f"at {target.name} the rigid link would be {-1e3 * clearance:.2f} mm inside the malleable one",
+            "itself", depth, 0.0, _LENGTH_SLACK,
+            f"at {name} the rigid link would be {1e3 * depth:.2f} mm inside the malleable one",
         )  # fmt: skip
     return violations

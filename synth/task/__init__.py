@@ -1,7 +1,7 @@
 """The task: what is asked, and how it is read from a file."""
 
 from synth.robot import BasePose
-from synth.task.model import DEFAULT_TOLERANCE, Objective, Obstacle, PointTarget, Task, Topology
+from synth.task.model import DEFAULT_TOLERANCE, Objective, Obstacle, PointTarget, TargetTable, Task, Topology
 from synth.task.reading import load_robot, load_task, parse_task
 from synth.task.schema import task_schema
 
@@ -11,6 +11,7 @@ __all__ = [
     "Objective",
     "Obstacle",
     "PointTarget",
+    "TargetTable",
     "Task",
     "Topology",
     "load_robot",

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
@@ -12,6 +14,8 @@ from synth.arrays import FloatArray, frozen
 from synth.robot import BasePose
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from synth.geometry import Solid
     from synth.robot import Robot
 
@@ -56,6 +60,72 @@ class PointTarget:
 
 
 @dataclass(frozen=True, eq=False)
+class TargetTable(Sequence[PointTarget]):
+    """Targets in columns: as a sequence it is one of `PointTarget`, made when asked for.
+
+    A hundred thousand points of a scanned surface are four arrays here, not as many objects.
+
+    Attributes:
+        names: How the result speaks of each.
+        positions: Where they are in the task frame, shape (n, 3), m.
+        tolerances: Largest misses that count as reached, shape (n,), m.
+        weights: Factors of their (miss / tolerance)^2, shape (n,).
+    """
+
+    names: Sequence[str]
+    positions: FloatArray
+    tolerances: FloatArray
+    weights: FloatArray
+
+    def __post_init__(self) -> None:
+        for column in ("positions", "tolerances", "weights"):
+            object.__setattr__(self, column, frozen(getattr(self, column)))
+
+    @classmethod
+    def of(cls, targets: Sequence[PointTarget]) -> TargetTable:
+        """Return targets in columns."""
+        if isinstance(targets, TargetTable):
+            return targets
+        return cls(
+            tuple(target.name for target in targets),
+            np.array([target.position for target in targets]).reshape(-1, 3),
+            np.array([target.tolerance for target in targets]),
+            np.array([target.weight for target in targets]),
+        )
+
+    def __len__(self) -> int:
+        return len(self.tolerances)
+
+    @overload
+    def __getitem__(self, index: int) -> PointTarget: ...
+    @overload
+    def __getitem__(self, index: slice) -> TargetTable: ...
+    def __getitem__(self, index: int | slice) -> PointTarget | TargetTable:
+        if isinstance(index, slice):
+            return self.take(np.arange(len(self))[index])
+        tolerance, weight = float(self.tolerances[index]), float(self.weights[index])
+        return PointTarget(self.names[index], self.positions[index], tolerance, weight)
+
+    def take(self, chosen: NDArray[np.intp]) -> TargetTable:
+        """Return some of the targets."""
+        return TargetTable(
+            tuple(self.names[index] for index in chosen),
+            self.positions[chosen],
+            self.tolerances[chosen],
+            self.weights[chosen],
+        )
+
+    def followed_by(self, other: TargetTable) -> TargetTable:
+        """Return these targets and then others."""
+        return TargetTable(
+            (*self.names, *other.names),
+            np.concatenate([self.positions, other.positions]),
+            np.concatenate([self.tolerances, other.tolerances]),
+            np.concatenate([self.weights, other.weights]),
+        )
+
+
+@dataclass(frozen=True, eq=False)
 class Obstacle:
     """A solid that link, rigid link and end effector keep clear of.
 
@@ -86,27 +156,32 @@ class Task:
 
     name: str
     robot: Robot
-    targets: tuple[PointTarget, ...]
+    targets: Sequence[PointTarget]
     base: BasePose = field(default_factory=BasePose)
     floor: float | None = 0.0
     topology: Topology = Topology.ANY
     objective: Objective = Objective.LEAST_SQUARES
     obstacles: tuple[Obstacle, ...] = ()
 
-    @property
+    @cached_property
+    def table(self) -> TargetTable:
+        """The targets in columns."""
+        return TargetTable.of(self.targets)
+
+    @cached_property
     def positions(self) -> FloatArray:
         """Positions of all targets in the base frame, shape (n, 3), m."""
-        return self.base.to_base(np.array([target.position for target in self.targets]))
+        return frozen(self.base.to_base(self.table.positions))
 
     @property
     def tolerances(self) -> FloatArray:
         """Tolerances of all targets, shape (n,), m."""
-        return np.array([target.tolerance for target in self.targets])
+        return self.table.tolerances
 
     @property
     def weights(self) -> FloatArray:
         """Weights of all targets, shape (n,)."""
-        return np.array([target.weight for target in self.targets])
+        return self.table.weights
 
     @property
     def solids(self) -> tuple[Solid, ...]:

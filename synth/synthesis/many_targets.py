@@ -1,0 +1,107 @@
+"""Tasks of very many targets: a part of them tells where to look, all of them decide.
+
+A surface has five numbers, so forty targets determine it nearly as well as a hundred thousand: the
+search runs on a part, at the same cost for any number of targets. What it finds is improved by steps that
+see every target, each a system of nine or eleven equations however many targets there are, and verified
+with every target.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.robot import into_turn
+from synth.synthesis.population import Population
+from synth.synthesis.refinement import refine
+from synth.task import Objective
+
+if TYPE_CHECKING:
+    from synth.arrays import FloatArray
+    from synth.robot import Arm
+    from synth.task import Task
+
+# That the nonlinear program knows all at once.
+_MOST_TARGETS = {Objective.LEAST_SQUARES: 100, Objective.MINIMAX: 40}
+_PART = 40  # of more targets, those that it knows
+# Steps with a larger part, and then with all.
+_SAMPLE, _STEPS, _STEPS_WITH_ALL = 2000, 8, 2
+_LAWSON_STEPS, _LEAST_SHARE = 25, 1e-6
+
+
+def part_of(task: Task, seed: int) -> Task:
+    """Return the task with a random part of its targets, or the task itself if they are few.
+
+    Args:
+        task: The task.
+        seed: The same part for the same seed.
+    """
+    if len(task.targets) <= _MOST_TARGETS[task.objective]:
+        return task
+    # The worst miss of a part says little of the worst of all, and takes the program ten times as long.
+    return replace(_random_part(task, _PART, seed), objective=Objective.LEAST_SQUARES)
+
+
+def _random_part(task: Task, count: int, seed: int) -> Task:
+    if count >= len(task.targets):
+        return task
+    chosen = np.random.default_rng([seed, count]).choice(len(task.targets), count, replace=False)
+    return replace(task, targets=task.table.take(np.sort(chosen)))
+
+
+def improved(task: Task, arm: Arm) -> Arm:
+    """Return an arm after Gauss-Newton steps on all targets, for the sum of their squared misses.
+
+    The steps know the limits of the link and of the joints, but neither floor nor obstacles.
+
+    Args:
+        task: The task with all its targets.
+        arm: The robot in a shape of equal arcs, near the best for a part of the targets.
+    """
+    for count, steps in ((_SAMPLE, _STEPS), (len(task.targets), _STEPS_WITH_ALL)):
+        some = _random_part(task, count, 0)
+        refined = refine(some, Population.of(arm), _nearest_theta2(some, arm)[None], iterations=steps)
+        arm = refined.population.arm(0, task.base)
+    return arm
+
+
+def levelled(task: Task, arm: Arm) -> Arm:
+    """Return an arm whose worst miss over all targets is less, by Lawson's weights.
+
+    A weighted sum of squares whose weights are multiplied by the misses again and again tends to the least
+    worst miss: its weights come to rest on the targets that decide (Lawson 1961). Those missed most of
+    all, up to the size of the larger part, stand for all.
+
+    Args:
+        task: The task with all its targets.
+        arm: The robot in a shape near the best, of equal arcs.
+    """
+    best, least = arm, _relative_misses(task, arm)
+    worst = task.table.take(np.sort(np.argsort(-least, kind="stable")[:_SAMPLE]))
+    some = replace(task, targets=worst)
+    share = np.full(len(worst), 1.0)
+    for _ in range(_LAWSON_STEPS):
+        relative = _relative_misses(some, arm)
+        share = np.maximum(share * relative / relative.max(), _LEAST_SHARE)
+        weighted = replace(some, targets=replace(worst, weights=worst.weights * share))
+        theta2 = arm.closest_joints(worst.positions)[0][None, :, 1]
+        arm = refine(weighted, Population.of(arm), theta2, iterations=2).population.arm(0, task.base)
+        if _relative_misses(some, arm).max() < least.max():
+            misses = _relative_misses(task, arm)
+            best, least = (arm, misses) if misses.max() < least.max() else (best, least)
+    return best
+
+
+def _relative_misses(task: Task, arm: Arm) -> FloatArray:
+    return np.asarray(np.sqrt(task.weights) * arm.closest_joints(task.table.positions)[1] / task.tolerances)
+
+
+def _nearest_theta2(task: Task, arm: Arm) -> FloatArray:
+    """Return the better branch of joint 2 for each target, moved into its limits, shape (n,), rad."""
+    limits, kinematics = task.robot.joint_limits, arm.kinematics
+    both = into_turn(kinematics.branches(task.positions)[..., 1], limits.second.middle)
+    both = np.clip(both, limits.second.lower, limits.second.upper)
+    misses = kinematics.each_target().miss(both, task.positions[:, None], limits.base)
+    return np.asarray(np.take_along_axis(both, np.argmin(misses, axis=-1)[:, None], axis=-1)[:, 0])
