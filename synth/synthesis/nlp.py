@@ -60,6 +60,8 @@ _CLEARANCE = 2e-4
 _LARGE_MISS = 0.01
 _OVERLAP_UNIT = 1e-3
 # How far a start is moved off its bounds.
+# Barrier and distance from the bounds with which the solver begins near the answer.
+_NEAR = 1e-6
 _PUSHES = ("ipopt.bound_push", "ipopt.bound_frac", "ipopt.slack_bound_push", "ipopt.slack_bound_frac")
 # With a smaller circle of the end effector, m, the second joint is not worth its name.
 _LEAST_RADIUS = 1e-3
@@ -152,7 +154,7 @@ class Structure:
 
 
 @lru_cache(maxsize=16)
-def shared_nlp(structure: Structure, arcs: int, thread: int) -> SynthesisNlp:
+def shared_nlp(structure: Structure, arcs: int, near: bool, thread: int) -> SynthesisNlp:
     """Return the program of a structure, without planes: to build it takes as long as three solves.
 
     A solver holds the iterates of its run, and two threads in one solver crash the interpreter. So the
@@ -160,7 +162,7 @@ def shared_nlp(structure: Structure, arcs: int, thread: int) -> SynthesisNlp:
     Nothing is remembered from one solve to the next; it only saves the time to build the same again.
     """
     del thread
-    return SynthesisNlp(structure, arcs)
+    return SynthesisNlp(structure, arcs, near=near)
 
 
 class SynthesisNlp:
@@ -170,10 +172,14 @@ class SynthesisNlp:
         structure: What the tasks have in common.
         arcs: Number m of equal arcs of the link, a divisor of PIECES.
         planes: What keeps the arm apart from obstacles and from itself.
+        near: Whether it starts near the answer, as from the solution of a neighbour.
     """
 
-    def __init__(self, structure: Structure, arcs: int, planes: Sequence[Separation] = ()) -> None:
+    def __init__(
+        self, structure: Structure, arcs: int, planes: Sequence[Separation] = (), *, near: bool = False
+    ) -> None:
         self._structure = structure
+        self._near = near
         self._arcs = arcs
         robot, count = structure.robot, structure.count
         self._x, self._g = _Block(), _Block()
@@ -279,7 +285,9 @@ class SynthesisNlp:
             "ipopt.tol": 1e-8,
             "ipopt.constr_viol_tol": 1e-9,
         }
-        if self._overlaps:
+        if self._near:
+            options |= {"ipopt.mu_init": _NEAR} | dict.fromkeys(_PUSHES, _NEAR)
+        elif self._overlaps:
             # From a shape that is nearly clear short first steps lead to a clear one; long ones lose it.
             options |= {"ipopt.mu_init": 1e-4} | dict.fromkeys(_PUSHES, 1e-5)
         # The solver keeps no reference to its callback: this object must.

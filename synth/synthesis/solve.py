@@ -6,7 +6,8 @@ import math
 import threading
 import time
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 
 _STARTS_AT_MOST = 48
 _STARTS_WHEN_IMPOSSIBLE = 12  # for a good best effort
+_FOLLOWED = 2  # shapes of a neighbour that are polished
 _STARTS_AFTER_FOUND = 6  # for distinct, gentler and nearer alternatives
 _ALTERNATIVES = 8
 # Shapes whose objective is above this multiple of the best one's are no alternatives to it.
@@ -66,6 +68,7 @@ def solve(
     task: Task,
     *,
     seed: int = 0,
+    warm_start: Solution | None = None,
     time_limit: float = math.inf,
     stop: Callable[[], bool] | None = None,
     progress: Callable[[Progress], None] | None = None,
@@ -75,6 +78,9 @@ def solve(
     Args:
         task: What is asked.
         seed: Seed of the search.
+        warm_start: The solution of a task nearby, of the same robot: targets a few millimetres or
+            centimetres away. If one of its two best shapes, polished for this task, reaches every target
+            it is returned, with no other shapes beside it. If not, the whole search follows.
         time_limit: Time after which the best shape so far is returned, s.
         stop: Asked many times a second; when it says yes, the best shape so far is returned.
         progress: Told after each start point.
@@ -84,7 +90,8 @@ def solve(
     """
     part = part_of(task, seed)
     search = _Search(task, part, seed, _Clock(time_limit), stop or _never, progress or _silent)
-    search.run()
+    if warm_start is None or not search.follow(warm_start):
+        search.run()
     return search.solution()
 
 
@@ -137,9 +144,24 @@ class _Search:
     starts_found: int = 0  # since a shape was found, that start included
     interrupted: bool = False
 
-    def __post_init__(self) -> None:
-        self._impossible = why_impossible(self.task)
-        self._starts_at_most = _STARTS_WHEN_IMPOSSIBLE if self._impossible else _STARTS_AT_MOST
+    @cached_property
+    def _impossible(self) -> tuple[str, ...]:
+        return why_impossible(self.task)
+
+    @cached_property
+    def _starts_at_most(self) -> int:
+        return _STARTS_WHEN_IMPOSSIBLE if self._impossible else _STARTS_AT_MOST
+
+    def follow(self, neighbour: Solution) -> bool:
+        """Polish the best shapes for a task nearby; whether one of them reaches every target."""
+        shapes = neighbour.designs[:_FOLLOWED] if neighbour.task.robot == self.task.robot else ()
+        for design in shapes:
+            arm = replace(design.arm, base=self.task.base)
+            self._polish(Start(arm, arm.closest_joints(self.part.table.positions)[0]), near=True)
+            self.starts += 1
+            if self._found() or self._out_of_time():
+                break
+        return self._found()
 
     def run(self) -> None:
         """Polish start points until enough is found, or the time is up."""
@@ -193,15 +215,20 @@ class _Search:
         blocking = [violation.sentence for violation in nearest[:_REASONS]]
         return status, ("no shape was found that the hardware can take", *blocking)
 
-    def _polish(self, start: Start) -> None:
-        """Solve from one start; where something is in the way, take the planes before it anew."""
+    def _polish(self, start: Start, *, near: bool = False) -> None:
+        """Solve from one start; where something is in the way, take the planes before it anew.
+
+        Args:
+            start: The start.
+            near: Whether the answer is near, so that the solver begins with short steps.
+        """
         arm, joints, itself = start.arm, start.joints, False
         best = math.inf
         for _ in range(_PLANES_ANEW):
             with self.clock.on("solving"):
                 planes = separations(self.part, arm, joints, itself=itself)
                 try:
-                    answer = self._nlp(planes).solve(self.part, arm, joints, self._out_of_time)
+                    answer = self._nlp(planes, near=near).solve(self.part, arm, joints, self._out_of_time)
                 except SolverError as error:
                     self.breakdowns.append(str(error))
                     return
@@ -216,11 +243,11 @@ class _Search:
             if (done and not clashes) or self._out_of_time():
                 return
 
-    def _nlp(self, planes: Sequence[Separation]) -> SynthesisNlp:
+    def _nlp(self, planes: Sequence[Separation], *, near: bool) -> SynthesisNlp:
         structure = Structure.of(self.part)
         if planes:
             return SynthesisNlp(structure, ARCS, planes)
-        return shared_nlp(structure, ARCS, threading.get_ident())
+        return shared_nlp(structure, ARCS, near, threading.get_ident())
 
     def _keep(self, arm: Arm, joints: FloatArray) -> Design:
         """Check a shape, keep it where it belongs, and return it."""
