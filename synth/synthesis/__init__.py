@@ -1,6 +1,7 @@
 """The synthesis: screen, polish, verify; `solve` is its one verb."""
 
 from synth.synthesis.motion import MOST_MOTIONS, Motion, motions
+from synth.synthesis.release import Release, releases
 from synth.synthesis.solution import Design, NotFoundError, Solution, Status, TargetResult, Timing
 from synth.synthesis.solve import Progress, solve
 from synth.synthesis.verification import Verification, Violation, verify
@@ -11,6 +12,7 @@ __all__ = [
     "Motion",
     "NotFoundError",
     "Progress",
+    "Release",
     "Solution",
     "Status",
     "TargetResult",
@@ -18,6 +20,7 @@ __all__ = [
     "Verification",
     "Violation",
     "motions",
+    "releases",
     "solve",
     "verify",
 ]

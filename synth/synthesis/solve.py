@@ -90,8 +90,26 @@ def solve(
     """
     part = part_of(task, seed)
     search = _Search(task, part, seed, _Clock(time_limit), stop or _never, progress or _silent)
-    if warm_start is None or not search.follow(warm_start):
+    near = warm_start.designs if warm_start is not None and warm_start.task.robot == task.robot else ()
+    if not search.follow(near):
         search.run()
+    return search.solution()
+
+
+def follow(
+    task: Task, designs: Sequence[Design], *, starts: int = 0, stop: Callable[[], bool] | None = None
+) -> Solution:
+    """Polish shapes for a task nearby, maybe of a robot nearly the same, and search little farther.
+
+    Args:
+        task: The task.
+        designs: Shapes, the most promising first.
+        starts: How many start points are polished, too, if none of the shapes will do.
+        stop: As for `solve`.
+    """
+    search = _Search(task, part_of(task, 0), 0, _Clock(math.inf), stop or _never, _silent)
+    if not search.follow(designs) and starts:
+        search.run(starts)
     return search.solution()
 
 
@@ -141,6 +159,7 @@ class _Search:
     blocked: list[Design] = field(default_factory=list)
     breakdowns: list[str] = field(default_factory=list)
     starts: int = 0
+    starts_at_most: int = 0
     starts_found: int = 0  # since a shape was found, that start included
     interrupted: bool = False
 
@@ -148,23 +167,19 @@ class _Search:
     def _impossible(self) -> tuple[str, ...]:
         return why_impossible(self.task)
 
-    @cached_property
-    def _starts_at_most(self) -> int:
-        return _STARTS_WHEN_IMPOSSIBLE if self._impossible else _STARTS_AT_MOST
-
-    def follow(self, neighbour: Solution) -> bool:
+    def follow(self, designs: Sequence[Design]) -> bool:
         """Polish the best shapes for a task nearby; whether one of them reaches every target."""
-        shapes = neighbour.designs[:_FOLLOWED] if neighbour.task.robot == self.task.robot else ()
-        for design in shapes:
-            arm = replace(design.arm, base=self.task.base)
+        for design in designs[:_FOLLOWED]:
+            arm = replace(design.arm, robot=self.task.robot, base=self.task.base)
             self._polish(Start(arm, arm.closest_joints(self.part.table.positions)[0]), near=True)
             self.starts += 1
             if self._found() or self._out_of_time():
                 break
         return self._found()
 
-    def run(self) -> None:
-        """Polish start points until enough is found, or the time is up."""
+    def run(self, most: int = _STARTS_AT_MOST) -> None:
+        """Polish start points until enough is found, or `most` are done, or the time is up."""
+        self.starts_at_most = self.starts + (_STARTS_WHEN_IMPOSSIBLE if self._impossible else most)
         for start in self._start_points():
             if self._out_of_time():
                 # A start that was not polished is better than nothing.
@@ -177,7 +192,7 @@ class _Search:
             self.starts += 1
             self.starts_found += self._found()
             self._report()
-            if self.starts >= self._starts_at_most or self.starts_found > _STARTS_AFTER_FOUND:
+            if self.starts >= self.starts_at_most or self.starts_found > _STARTS_AFTER_FOUND:
                 return
 
     def solution(self) -> Solution:
@@ -286,7 +301,7 @@ class _Search:
 
     def _report(self) -> None:
         worst = min((float(design.verification.misses.max()) for design in self.designs), default=math.inf)
-        self.progress(Progress(self.starts, self._starts_at_most, worst, self._found()))
+        self.progress(Progress(self.starts, self.starts_at_most, worst, self._found()))
 
 
 def _what_misses(task: Task, design: Design) -> list[str]:
