@@ -428,9 +428,9 @@ WRONG = {
     # what a later version brings
     "surface": (
         TASK + "surface: {sphere: {center: [0, 0, 0], radius: 1}}\n",
-        "surface",
+        "surface.sphere",
         13,
-        "not supported targets",
+        "not supported points",
     ),
     "path": (TASK + "path: {csv: a.csv}\n", "path", 13, "not supported targets"),
     "free base": (task("[0, 100, 0]", "[0, [0, 100], 0]"), "base.position[1]", 5, "free base not supported"),
@@ -580,9 +580,10 @@ class TestSchema:
 
     def test_has_the_fields_of_the_format(self):
         schema = task_schema()
-        fields = "synth name length_unit robot base floor topology objective targets obstacles"
+        fields = "synth name length_unit robot base floor topology objective targets surface obstacles"
         assert set(schema["properties"]) == set(fields.split())
-        assert set(schema["required"]) == {"synth", "length_unit", "robot", "targets"}
+        assert set(schema["required"]) == {"synth", "length_unit", "robot"}
+        assert schema["anyOf"] == [{"required": ["targets"]}, {"required": ["surface"]}]
         assert schema["additionalProperties"] is False
 
 

@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.robot import into_turn
 from synth.synthesis.population import Population
-from synth.synthesis.refinement import refine
+from synth.synthesis.refinement import nearest_theta2, refine
 from synth.task import Objective
 
 if TYPE_CHECKING:
@@ -62,7 +61,9 @@ def improved(task: Task, arm: Arm) -> Arm:
     """
     for count, steps in ((_SAMPLE, _STEPS), (len(task.targets), _STEPS_WITH_ALL)):
         some = _random_part(task, count, 0)
-        refined = refine(some, Population.of(arm), _nearest_theta2(some, arm)[None], iterations=steps)
+        refined = refine(
+            some, Population.of(arm), nearest_theta2(some, arm.kinematics)[None], iterations=steps
+        )
         arm = refined.population.arm(0, task.base)
     return arm
 
@@ -96,12 +97,3 @@ def levelled(task: Task, arm: Arm) -> Arm:
 
 def _relative_misses(task: Task, arm: Arm) -> FloatArray:
     return np.asarray(np.sqrt(task.weights) * arm.closest_joints(task.table.positions)[1] / task.tolerances)
-
-
-def _nearest_theta2(task: Task, arm: Arm) -> FloatArray:
-    """Return the better branch of joint 2 for each target, moved into its limits, shape (n,), rad."""
-    limits, kinematics = task.robot.joint_limits, arm.kinematics
-    both = into_turn(kinematics.branches(task.positions)[..., 1], limits.second.middle)
-    both = np.clip(both, limits.second.lower, limits.second.upper)
-    misses = kinematics.each_target().miss(both, task.positions[:, None], limits.base)
-    return np.asarray(np.take_along_axis(both, np.argmin(misses, axis=-1)[:, None], axis=-1)[:, 0])

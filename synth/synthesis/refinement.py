@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.robot import into_turn
 from synth.synthesis.population import Population, into_limits
 from synth.task import Topology
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
-    from synth.robot import Interval
+    from synth.robot import Interval, Kinematics
     from synth.task import Task
 
 _ITERATIONS = 14
@@ -72,6 +73,20 @@ def refine(task: Task, population: Population, theta2: FloatArray, iterations: i
         cost = np.where(better, moved_cost, cost)
         damping = np.clip(np.where(better, 0.2 * damping, 8.0 * damping), _LEAST_DAMPING, _MOST_DAMPING)
     return Refined(population, joints, cost)
+
+
+def nearest_theta2(task: Task, kinematics: Kinematics) -> FloatArray:
+    """Return the better branch of joint 2 for each target, moved into its limits, shape (..., n), rad.
+
+    Args:
+        task: The task.
+        kinematics: The joints of shapes, of shape (...).
+    """
+    limits, one = task.robot.joint_limits, kinematics.each_target()
+    both = into_turn(one.branches(task.positions)[..., 1], limits.second.middle)
+    both = np.clip(both, limits.second.lower, limits.second.upper)
+    misses = one.each_target().miss(both, task.positions[:, None], limits.base)
+    return np.asarray(np.take_along_axis(both, np.argmin(misses, axis=-1)[..., None], axis=-1)[..., 0])
 
 
 def relative_weights(task: Task) -> FloatArray:

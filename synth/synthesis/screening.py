@@ -7,6 +7,7 @@ finds it nearly always, and looking at a shape is ten thousand times cheaper tha
 from __future__ import annotations
 
 import itertools
+from collections import Counter
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,7 @@ import numpy as np
 
 from synth.robot import Arm, into_turn
 from synth.synthesis.exact_starts import exact_designs, nearest_to_designs
+from synth.synthesis.hopping import better, hopped
 from synth.synthesis.population import Population, into_limits
 from synth.synthesis.refinement import Refined, category_offsets, refine, relative_weights, with_theta1
 from synth.synthesis.separation import overlaps
@@ -31,7 +33,7 @@ _MOST_TARGETS = 40
 # How many shapes are drawn, looked at with the joint limits, and refined: most tasks are found in the
 # first step, which takes a tenth of the second one's time.
 _STEPS = ((20_000, 1_000, 200), (200_000, 4_000, 400))
-_STARTS_PER_STEP = 12
+_STARTS_PER_STEP, _STARTS_AFTER_HOPS = 12, 6
 _PER_DESIGN = 6  # shapes looked at near each exact design, where there are any
 # Misses are only compared up to here, m: beyond, a shape is far off and by how much says little.
 _FAR = 0.3
@@ -40,6 +42,7 @@ _NEAR = 3e-3
 # Starts whose link ends are nearer than this, m, count as one, an axis 1 rad apart for _ARM_LENGTH.
 _DISTINCT = 0.03
 _ARM_LENGTH = 0.5
+_ALIKE, _OF_A_KIND = 2e-3, 2  # starts whose mean squared misses differ by less than this part
 # Mean squared misses below this, m^2, are all as good: then the gentler bend goes first.
 _SETTLED = 1e-8
 # The search over branches: rounds, shapes kept, children of each, and how many targets a child swaps on
@@ -88,7 +91,7 @@ def _fewer_targets(task: Task, rng: np.random.Generator) -> Task:
 
 def _starts(task: Task, rng: np.random.Generator) -> Iterator[Start]:
     """Yield start points for a task of few targets, each step with more effort than the one before."""
-    designs, refined = exact_designs(task) or (), None
+    designs, after_hops = exact_designs(task) or (), None
     for size, shortlist, count in _STEPS:
         population = Population.sample(task.robot, size, rng)
         if task.floor is not None:
@@ -106,8 +109,11 @@ def _starts(task: Task, rng: np.random.Generator) -> Iterator[Start]:
         if task.obstacles:
             refined = _wandered_clear(task, refined, rng)
         yield from itertools.islice(_distinct(task, refined), _STARTS_PER_STEP)
-    if refined is not None:
-        yield from _distinct(task, _with_branches_swapped(task, refined, rng))
+        # The second step does not begin anew: what was hopped to from the first one goes into its hops.
+        after_hops = hopped(task, refined if after_hops is None else better(refined, after_hops), rng)
+        yield from itertools.islice(_distinct(task, after_hops), _STARTS_AFTER_HOPS)
+    if after_hops is not None:
+        yield from _distinct(task, _with_branches_swapped(task, after_hops, rng))
 
 
 def _promising(
@@ -128,10 +134,16 @@ def _distinct(task: Task, refined: Refined) -> Iterator[Start]:
     cost = np.maximum(refined.cost, _SETTLED)
     if task.obstacles:
         cost = cost + _overlap_cost(task, population, refined.joints)
+    # Shapes that miss alike are mostly one surface, bent in several ways.
+    kinds, often = np.round(np.log(cost) / _ALIKE), Counter[float]()
     poses = np.hstack([position, _ARM_LENGTH * frame[:, :, 0]])
     taken = np.empty((0, poses.shape[1]))
     for index in np.lexsort([population.bending, cost]):
-        if np.all(np.linalg.norm(taken - poses[index], axis=1) > _DISTINCT):
+        kind, settled = float(kinds[index]), cost[index] <= _SETTLED
+        if (settled or often[kind] < _OF_A_KIND) and np.all(
+            np.linalg.norm(taken - poses[index], axis=1) > _DISTINCT
+        ):
+            often[kind] += 1
             taken = np.vstack([taken, poses[index]])
             yield Start(population.arm(index, task.base), refined.joints[index])
 

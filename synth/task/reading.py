@@ -15,14 +15,17 @@ from synth.errors import InputError
 from synth.geometry import Box, Capsule
 from synth.robot import PRESETS, BasePose, Interval, JointLimits, MalleableLink, RigidLink, Robot
 from synth.task.document import Document
-from synth.task.model import DEFAULT_TOLERANCE, Obstacle, PointTarget, Task
+from synth.task.model import DEFAULT_TOLERANCE, Obstacle, PointTarget, TargetTable, Task
+from synth.task.points_file import read_points
 from synth.task.schema import (
+    SURFACES_TO_COME,
     BoxEntry,
     CapsuleEntry,
     ObstacleEntry,
     RobotEntry,
     RobotFile,
     SphereEntry,
+    SurfaceTaskFile,
     TargetEntry,
     TaskFile,
     ends,
@@ -32,8 +35,9 @@ from synth.task.yaml_text import read_file, read_text
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
+    from synth.arrays import FloatArray
     from synth.geometry import Solid
 
 PER_METRE = {"mm": 1000.0, "cm": 100.0, "m": 1.0}  # to divide by: 455 / 1000 is 0.455 exactly
@@ -112,7 +116,8 @@ def _task(document: Document, directory: Path, name: str) -> Task:
     robot = named_robot(document, reference, directory) if isinstance(reference, str) else None
     for key, kind in (("targets", "target"), ("obstacles", "obstacle")):
         _report_names_given_twice(document, key, kind, content.get(key))
-    file = validate(document, TaskFile)
+    scan = _scan(document, content["surface"], directory) if "surface" in content else None
+    file = validate(document, SurfaceTaskFile if "surface" in content else TaskFile)
     if file is None or document.is_wrong:
         raise document.error()
     per_metre = PER_METRE[file.length_unit]
@@ -123,10 +128,7 @@ def _task(document: Document, directory: Path, name: str) -> Task:
     return Task(
         name=file.name or name,
         robot=robot,
-        targets=tuple(
-            _to_target(entry, per_metre, _default_name("target", index))
-            for index, entry in enumerate(file.targets)
-        ),
+        targets=_targets(file, scan, per_metre),
         base=BasePose(np.array(file.base.position) / per_metre, math.radians(file.base.yaw_deg)),
         floor=None if file.floor is None else file.floor / per_metre,
         topology=file.topology,
@@ -136,6 +138,36 @@ def _task(document: Document, directory: Path, name: str) -> Task:
             for index, entry in enumerate(file.obstacles)
         ),
     )
+
+
+def _scan(document: Document, surface: object, directory: Path) -> FloatArray | None:
+    """Return the points of a surface's file in its unit, or None with the mistakes reported."""
+    entry = surface if isinstance(surface, dict) else {}
+    if isinstance(surface, dict) and not entry.keys() & {"points", *SURFACES_TO_COME}:
+        document.report(("surface",), "must name a file of points: {points: file.csv}")
+    file = entry.get("points")
+    if isinstance(file, str) and file:
+        try:
+            return read_points(directory / file)
+        except InputError as error:
+            for mistake in error.mistakes:
+                document.adopt(("surface", "points"), mistake)
+    return None
+
+
+def _targets(file: TaskFile, scan: FloatArray | None, per_metre: float) -> Sequence[PointTarget]:
+    """Return the targets, and behind them the points of a surface."""
+    targets = tuple(
+        _to_target(entry, per_metre, _default_name("target", index))
+        for index, entry in enumerate(file.targets or ())
+    )
+    if scan is None:
+        return targets
+    given, count = file.surface.tolerance, len(scan)
+    tolerance = DEFAULT_TOLERANCE if given is None else given / per_metre
+    names = tuple(f"surface point {number}" for number in range(1, count + 1))
+    points = TargetTable(names, scan / per_metre, np.full(count, tolerance), np.ones(count))
+    return TargetTable.of(targets).followed_by(points)
 
 
 def named_robot(document: Document, reference: str, directory: Path) -> Robot | None:

@@ -22,6 +22,7 @@ from pydantic import (
 from synth.task.model import Objective, Topology
 
 ONE, RANGE, TEXT, MAPPING = "<one>", "<range>", "<text>", "<mapping>"  # tags of unions, never keys
+SURFACES_TO_COME = ("sphere", "plane", "torus", "mesh")
 SMALLEST = 1e-9
 LARGEST = 1e6
 
@@ -206,6 +207,17 @@ class ObstacleEntry(Strict):
         return self
 
 
+class SurfaceEntry(Strict):
+    """A surface that the workspace shall pass through."""
+
+    points: Annotated[str, Field(min_length=1)] = Field(
+        default_factory=absent, description="path of a CSV file of points x,y,z in the task frame"
+    )
+    tolerance: Positive = Field(
+        default_factory=absent, description="largest miss of each point; 1 mm if absent"
+    )
+
+
 class TaskFile(Strict):
     """A task file."""
 
@@ -225,9 +237,21 @@ class TaskFile(Strict):
         default=Objective.LEAST_SQUARES, description="norm of miss over tolerance"
     )
     targets: Annotated[list[TargetEntry], Field(min_length=1)] = Field(description="the points to reach")
+    surface: SurfaceEntry = Field(default_factory=absent, description="a surface, given by points of it")
     obstacles: list[ObstacleEntry] = Field(default=[], description="solids to keep clear of")
+
+
+class SurfaceTaskFile(TaskFile):
+    """A task file with a surface: it may do without targets."""
+
+    targets: Annotated[list[TargetEntry], Field(min_length=1)] = Field(
+        default_factory=absent, description="the points to reach"
+    )
 
 
 def task_schema() -> dict[str, Any]:
     """Return the JSON Schema of task files, for editors that complete and check YAML."""
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | TaskFile.model_json_schema()
+    schema = TaskFile.model_json_schema()
+    schema["required"] = [key for key in schema["required"] if key != "targets"]
+    schema["anyOf"] = [{"required": ["targets"]}, {"required": ["surface"]}]
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | schema

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, get_args
 from pydantic import BaseModel, ValidationError
 
 from synth.task.document import KeyPath, Refused, key_text
-from synth.task.schema import MAPPING, ONE, RANGE, TEXT
+from synth.task.schema import MAPPING, ONE, RANGE, SURFACES_TO_COME, TEXT
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -22,7 +22,10 @@ _M = TypeVar("_M", bound=BaseModel)
 
 _LATER = "not supported by this version of synth yet; "
 _LATER_KEYS = {
-    "surface": f"a desired surface is {_LATER}give points under 'targets'",
+    **{
+        f"surface.{kind}": f"a surface as a {kind} is {_LATER}give points of it: {{points: file.csv}}"
+        for kind in SURFACES_TO_COME
+    },
     "path": f"a path to be followed is {_LATER}give points under 'targets'",
 }
 _SENTENCES = {

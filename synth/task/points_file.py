@@ -1,0 +1,88 @@
+"""Points from a CSV file: a scanned surface, of up to some millions of them."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.errors import InputError, Mistake
+from synth.task.schema import LARGEST
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from synth.arrays import FloatArray
+
+_MAX_BYTES = 200_000_000
+_COLUMNS = ["x", "y", "z"]
+_MISTAKES_AT_MOST = 10  # named one by one; of a file of another kind every line is wrong
+
+
+def read_points(path: Path) -> FloatArray:
+    """Read the points of a CSV file, one a line: x, y and z, under a header of these names or none.
+
+    Args:
+        path: The file; empty lines are passed over.
+
+    Returns:
+        The points as they stand, shape (n, 3), in the unit of the file.
+
+    Raises:
+        InputError: The file cannot be read or is wrong; with the first ten mistakes and their lines.
+    """
+    try:
+        with path.open("rb") as stream:
+            content = stream.read(_MAX_BYTES + 1)
+        lines = content.decode("utf-8-sig").splitlines()
+    except UnicodeDecodeError:
+        raise InputError([Mistake("is not a text file in UTF-8", str(path))]) from None
+    except FileNotFoundError:
+        raise InputError([Mistake("there is no such file", str(path))]) from None
+    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
+        reason = getattr(error, "strerror", None) or error
+        raise InputError([Mistake(f"cannot be read: {reason}", str(path))]) from None
+    if len(content) > _MAX_BYTES:
+        raise InputError([Mistake(f"is larger than {_MAX_BYTES // 1_000_000} MB", str(path))])
+    first = next((number for number, line in enumerate(lines) if line.strip()), None)
+    start = first + 1 if first is not None and _is_header(lines[first]) else 0
+    rows = [line for line in lines[start:] if line.strip()]
+    try:
+        # The fast way; whatever is wrong is looked for line by line.
+        points = np.loadtxt(rows, delimiter=",", ndmin=2, comments=None) if rows else None
+    except ValueError:
+        points = None
+    if points is None or points.shape[1] != 3 or not np.all(np.abs(points) <= LARGEST):
+        raise InputError(_mistakes(lines, start, str(path)))
+    return points
+
+
+def _is_header(line: str) -> bool:
+    return [cell.strip().lower() for cell in line.split(",")] == _COLUMNS
+
+
+def _mistakes(lines: list[str], start: int, file: str) -> list[Mistake]:
+    """Return what is wrong with lines of points, each with its line."""
+    mistakes: list[Mistake] = []
+    for number, line in enumerate(lines[start:], start + 1):
+        if len(mistakes) == _MISTAKES_AT_MOST:
+            return [*mistakes, Mistake("has more such lines; the first ones are named", file)]
+        if line.strip() and (wrong := _wrong(line)):
+            mistakes.append(Mistake(wrong, file, number))
+    return mistakes or [Mistake("holds no points", file)]
+
+
+def _wrong(line: str) -> str:
+    """Return what is wrong with a line, or nothing."""
+    cells = [cell.strip() for cell in line.split(",")]
+    if len(cells) != 3:
+        return f"must hold three numbers with commas between, x,y,z, but is {line.strip()[:40]!r}"
+    for name, cell in zip(_COLUMNS, cells, strict=True):
+        try:
+            value = float(cell)
+        except ValueError:
+            return f"{name} must be a number, but is {cell[:40]!r}"
+        if not (math.isfinite(value) and abs(value) <= LARGEST):
+            return f"{name} must be a finite number, at most {LARGEST:g} either way, but is {cell[:40]!r}"
+    return ""

@@ -1,0 +1,78 @@
+"""A surface given by the points of a CSV file."""
+
+import numpy as np
+import pytest
+
+from synth.errors import InputError
+from synth.task import load_task, parse_task
+
+TASK = """synth: 1
+length_unit: mm
+robot: malleable-2dof
+surface: {points: scan.csv, tolerance: 5}
+"""
+
+
+def written(tmp_path, text, task=TASK):
+    (tmp_path / "scan.csv").write_bytes(text if isinstance(text, bytes) else text.encode())
+    (tmp_path / "task.yaml").write_text(task)
+    return tmp_path / "task.yaml"
+
+
+@pytest.mark.parametrize("header", ["", "x,y,z\n", "\n X, Y ,z\n", "\ufeffx,y,z\r\n"])
+def test_points_are_targets_in_metres_with_or_without_a_header(tmp_path, header):
+    task = load_task(written(tmp_path, header + "500, 10,200\n\n-3e2,400.5,180\n"))
+    assert np.array_equal(task.positions, [[0.5, 0.01, 0.2], [-0.3, 0.4005, 0.18]])
+    assert np.array_equal(task.tolerances, [0.005, 0.005])
+    assert [target.name for target in task.targets] == ["surface point 1", "surface point 2"]
+
+
+def test_points_stand_behind_targets(tmp_path):
+    content = TASK + "targets: [{name: pick, position: [100, 200, 300]}]\n"
+    task = load_task(written(tmp_path, "500,10,200\n", content))
+    assert [target.name for target in task.targets] == ["pick", "surface point 1"]
+    assert np.array_equal(task.tolerances, [0.001, 0.005])
+
+
+@pytest.mark.parametrize(
+    ("text", "places"),
+    [
+        ("x,y,z\n1,2,3\n1,two,3\n4,5,nan\n", [(3, "y must be a number"), (4, "z must be a finite number")]),
+        ("1,2,3\n1,2\n", [(2, "must hold three numbers")]),
+        ("1;2;3\n", [(1, "must hold three numbers")]),
+        ("a,b,c\n1,2,3\n", [(1, "x must be a number")]),
+        ("1,2,1e9\n", [(1, "z must be a finite number")]),
+        ("", [(None, "holds no points")]),
+        ("x,y,z\n\n", [(None, "holds no points")]),
+        (b"\xff\xfe1,2,3", [(None, "UTF-8")]),
+        ("x\n" * 12, [(i, "must hold") for i in range(1, 11)] + [(None, "more such lines")]),
+    ],
+)
+def test_every_mistake_is_named_with_its_file_and_line(tmp_path, text, places):
+    path = written(tmp_path, text)
+    with pytest.raises(InputError) as caught:
+        load_task(path)
+    mistakes = caught.value.mistakes
+    assert [mistake.line for mistake in mistakes] == [line for line, _ in places]
+    for mistake, (_, words) in zip(mistakes, places, strict=True):
+        assert mistake.file == str(tmp_path / "scan.csv")
+        assert words in mistake.message
+
+
+def test_a_missing_file_is_named_beside_other_mistakes(tmp_path):
+    (tmp_path / "task.yaml").write_text(TASK.replace("5}", "0}"))
+    with pytest.raises(InputError) as caught:
+        load_task(tmp_path / "task.yaml")
+    assert "scan.csv: there is no such file" in str(caught.value)
+    assert "surface.tolerance" in str(caught.value)
+
+
+@pytest.mark.parametrize("kind", ["sphere", "plane", "torus", "mesh"])
+def test_other_surfaces_are_refused_by_name(kind):
+    with pytest.raises(InputError, match=f"surface[.]{kind}: a surface as a {kind} is not supported"):
+        parse_task(TASK.replace("points: scan.csv", f"{kind}: {{}}"))
+
+
+def test_without_surface_or_targets_the_targets_are_missing():
+    with pytest.raises(InputError, match="targets: is missing"):
+        parse_task(TASK.replace("surface: {points: scan.csv, tolerance: 5}\n", ""))
