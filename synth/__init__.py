@@ -20,7 +20,17 @@ if TYPE_CHECKING:
     from synth.errors import GeometryError, InputError, Mistake, SolverError, SynthError
     from synth.export import solution_to_json, write_files
     from synth.guide import Guide, make_guide
-    from synth.robot import PRESETS, Arm, BasePose, LinkShape, Robot, Workspace
+    from synth.robot import (
+        PRESETS,
+        Arm,
+        BasePose,
+        LinkShape,
+        Robot,
+        Workspace,
+        link_to_pose,
+        links_to_poses,
+        why_no_link,
+    )
     from synth.synthesis import NotFoundError, Solution, Status, solve, verify
     from synth.task import Objective, PointTarget, Task, Topology, load_robot, load_task, parse_task
 
@@ -28,7 +38,17 @@ _ROOMS = {
     "errors": ("GeometryError", "InputError", "Mistake", "SolverError", "SynthError"),
     "export": ("solution_to_json", "write_files"),
     "guide": ("Guide", "make_guide"),
-    "robot": ("PRESETS", "Arm", "BasePose", "LinkShape", "Robot", "Workspace"),
+    "robot": (
+        "PRESETS",
+        "Arm",
+        "BasePose",
+        "LinkShape",
+        "Robot",
+        "Workspace",
+        "link_to_pose",
+        "links_to_poses",
+        "why_no_link",
+    ),
     "synthesis": ("NotFoundError", "Solution", "Status", "solve", "verify"),
     "task": ("Objective", "PointTarget", "Task", "Topology", "load_robot", "load_task", "parse_task"),
 }
@@ -55,6 +75,8 @@ __all__ = [
     "Topology",
     "Workspace",
     "__version__",
+    "link_to_pose",
+    "links_to_poses",
     "load_robot",
     "load_task",
     "make_guide",
@@ -62,6 +84,7 @@ __all__ = [
     "solution_to_json",
     "solve",
     "verify",
+    "why_no_link",
     "write_files",
 ]
 

@@ -2,14 +2,18 @@
 
 from synth.robot.arm import Arm, JointBranches
 from synth.robot.base import BasePose
+from synth.robot.end_pose import ANYWHERE, PoseMiss, pose_miss
 from synth.robot.hardware import Interval, JointLimits, MalleableLink, RigidLink, Robot
 from synth.robot.kinematics import Kinematics, into_turn
 from synth.robot.link import LinkShape, arc_motion, chain_end
+from synth.robot.pose_proofs import why_no_link
+from synth.robot.pose_search import link_to_pose, links_to_poses
 from synth.robot.presets import PRESETS
 from synth.robot.reach import LinkReach
 from synth.robot.workspace import SurfaceMesh, Workspace
 
 __all__ = [
+    "ANYWHERE",
     "PRESETS",
     "Arm",
     "BasePose",
@@ -20,6 +24,7 @@ __all__ = [
     "LinkReach",
     "LinkShape",
     "MalleableLink",
+    "PoseMiss",
     "RigidLink",
     "Robot",
     "SurfaceMesh",
@@ -27,4 +32,8 @@ __all__ = [
     "arc_motion",
     "chain_end",
     "into_turn",
+    "link_to_pose",
+    "links_to_poses",
+    "pose_miss",
+    "why_no_link",
 ]
