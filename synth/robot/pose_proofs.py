@@ -27,6 +27,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -48,7 +49,7 @@ _HALVINGS = 9
 _DIRECTIONS = 600  # n, evenly on the sphere, the best of which is then improved
 _RINGS = (0.08, 0.03, 0.01, 0.004)  # steps of that improvement, rad
 _AROUND = 24
-_BISECTIONS = 12
+_BISECTIONS = 8
 _LONGEST = 3.0  # times as long: how far it is looked for a link that is long enough
 
 
@@ -105,6 +106,11 @@ class _Tangents:
     p: FloatArray
     u: FloatArray
 
+    @cached_property
+    def reach(self) -> LinkReach:
+        """Where the link's end can be, its direction free."""
+        return LinkReach(self.link)
+
     def shortfall(self, share: float = 0.0) -> float:
         """Return by how much every link surely misses the position, m; 0 if that is not proven.
 
@@ -135,7 +141,7 @@ class _Tangents:
     def excesses(self, beta: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return how far each condition is exceeded, (3, n), m, and how fast that may fall, (3,), m/rad.
 
-        The first, an angle, is told in bend radii.
+        The first, an angle, is told in bend radii; the second is 0 where the condition holds.
         """
         across = np.linalg.svd(self.u[None])[2][1:]
         t = np.cos(beta)[:, None] * across[0] + np.sin(beta)[:, None] * across[1]
@@ -143,7 +149,9 @@ class _Tangents:
         turn = _angle(t[:, 2])
         along = t @ self.p
         aside = np.sqrt(np.maximum(self.p @ self.p - along**2, 0.0))
-        backward = -LinkReach(self.link).margin(np.column_stack([aside, np.zeros_like(aside), along]))
+        start, backward = np.column_stack([aside, np.zeros_like(aside), along]), np.zeros_like(along)
+        outside = ~self.reach.contains(start)
+        backward[outside] = -self.reach.margin(start[outside])
         spare = max(max(longest, np.pi * radius) - radius * self.link.max_total_bend, 0.0)
         rates = np.array([radius, float(np.linalg.norm(self.p)), 3.0 * radius + 0.5 * spare])
         return np.stack([radius * (turn - _largest_turn(self.link)), backward, self.beyond(t, turn)]), rates
