@@ -10,7 +10,7 @@ from synth.robot import Interval, LinkShape, MalleableLink
 
 
 def random_link(rng):
-    """Return hardware of another size: fixed or variable length, with or without a limit of the total bend."""
+    """Return hardware of another size: of fixed length or not, with a limit of the total bend or not."""
     radius = rng.uniform(0.05, 0.2)
     lower = radius * rng.uniform(1.5, 6.5)
     upper = lower * rng.choice([1.0, rng.uniform(1.0, 1.4)])

@@ -84,7 +84,7 @@ def test_least_energy_is_a_minimum_among_links_of_the_same_pose():
     rng = np.random.default_rng(6)
     position, axis = pose_of(bent(LINK, rng))
     best = link_to_pose(LINK, position, axis, theta1=AT_ZERO)
-    for _ in range(6):
+    for _ in range(4):
         change = rng.normal(scale=0.3, size=best.curvatures.shape)
         start = LinkShape(best.curvatures + change, best.lengths)
         other = link_to_pose(LINK, position, axis, theta1=AT_ZERO, current=start)
@@ -92,7 +92,7 @@ def test_least_energy_is_a_minimum_among_links_of_the_same_pose():
 
 
 def change_between(shape, other):
-    """Return the mean square of r (k - k') along the centreline plus that of the relative change of length."""
+    """Return the mean square of r (k - k') along the centreline plus that of the length's relative change."""
     share = (np.arange(720) + 0.5) / 720
     k, k_other = (
         one.curvatures[np.searchsorted(np.cumsum(one.lengths) / one.length, share)] for one in (shape, other)
@@ -103,7 +103,7 @@ def change_between(shape, other):
 
 def test_the_nearest_link_changes_less_than_the_gentlest_and_no_more_than_any_planted_one():
     rng = np.random.default_rng(7)
-    for _ in range(6):
+    for _ in range(4):
         current = ArcChains(LINK, 12).shape(ArcChains(LINK, 12).random(1, rng, 3)[0])
         k = current.curvatures + rng.normal(scale=0.4, size=current.curvatures.shape)
         k *= np.minimum(LINK.max_curvature / np.linalg.norm(k, axis=1), 1.0)[:, None]
@@ -131,10 +131,10 @@ def test_the_same_seed_gives_the_same_link():
 def test_no_pose_is_both_found_and_impossible():
     rng = np.random.default_rng(10)
     for link in (LINK, random_link(rng)):
-        poses = [hopeless_pose(link, rng) for _ in range(16)]
+        poses = [hopeless_pose(link, rng) for _ in range(8)]
         shapes = links_to_poses(link, *(np.array(part) for part in zip(*poses, strict=True)))
         reasons = [why_no_link(link, *pose) for pose in poses]
-        assert sum(map(bool, reasons)) >= 4
+        assert sum(map(bool, reasons)) >= 2
         assert not any(shape and reason for shape, reason in zip(shapes, reasons, strict=True))
 
 
@@ -174,8 +174,8 @@ def test_a_link_that_cannot_bend_on_says_so_where_the_position_asks_for_more_tha
 
 
 def test_a_link_that_is_too_short_says_how_long_it_would_have_to_be():
-    # Straight up by h and then a quarter turn about the tightest bend: L = h + (pi/2 - 1) r for axis 2 along z
-    # and the end r beside the axis. At least that long is needed; less is proven too little.
+    # Straight up and then a quarter turn in the tightest bend, for axis 2 along z and the end r beside the
+    # axis: L = h + (pi/2 - 1) r. At least that long is needed; less is proven too little.
     radius, height = 0.1, 0.5
     needed = height + (0.5 * np.pi - 1.0) * radius
     short = MalleableLink(Interval(0.3, needed - 2e-3), radius)

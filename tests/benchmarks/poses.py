@@ -1,6 +1,6 @@
 """How often a link is found for an end pose, how often for none, and whether the reach is what links reach.
 
-    python tests/benchmarks/poses.py [planted] [impossible] [undecided] [reach] [--poses 2000] [--samples 1000000]
+    python tests/benchmarks/poses.py [planted impossible undecided reach] [--poses 2000] [--samples 1000000]
 
 Counts are of poses; times are of this machine and only good for ratios.
 """
