@@ -40,7 +40,7 @@ _STARTS = (4, 32)  # chains that are improved for each pose; more where none arr
 _FINE_STARTS = 8  # of these, in finer arcs
 _STEPS, _FINE_STEPS = 40, 120
 _EASED = 3  # arrivals of a pose that move on
-_BATCH = 256  # poses at once
+_BATCH = 128  # poses at once
 
 
 def link_to_pose(
