@@ -3,10 +3,12 @@
 The links have three to six arcs of unequal length, which the equal arcs of the search can only imitate.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from planted import ROBOT
 
-from synth.robot import Interval, LinkShape, MalleableLink
+from synth.robot import Interval, LinkReach, LinkShape, MalleableLink
 
 
 def random_link(rng):
@@ -51,21 +53,25 @@ def planted_poses(link, count, rng):
     return tuple(np.array(part) for part in zip(*poses, strict=True))
 
 
+def stiff_link(rng):
+    """Return hardware that bends little in all."""
+    return replace(random_link(rng), max_total_bend=rng.uniform(0.4, 1.5))
+
+
 def hopeless_pose(link, rng):
-    """Return a pose that is likely out of reach: too far, too near, or with axis 2 along a stretched link."""
-    direction = rng.normal(size=3)
+    """Return a pose that is likely out of reach: too far, too near, or at the rim with an awkward axis 2."""
+    direction, axis = rng.normal(size=3), rng.normal(size=3)
     direction /= np.linalg.norm(direction)
-    axis = rng.normal(size=3)
-    kind = rng.choice(4, p=[0.05, 0.05, 0.45, 0.45])
+    kind = rng.integers(8)
     if kind == 0:
-        distance = link.length.upper * rng.uniform(1.0, 1.3)
-    elif kind == 1:
-        distance = link.length.lower * rng.uniform(0.0, 0.15)
-    elif kind == 2:
-        distance, axis = link.length.upper * rng.uniform(0.85, 1.0), direction + 0.1 * axis
-    else:
-        distance, axis = link.length.upper * rng.uniform(0.2, 0.9), np.array([0.0, 0.0, 1.0]) + 0.2 * axis
-    return distance * direction, axis / np.linalg.norm(axis)
+        return link.length.upper * rng.uniform(1.0, 1.3) * direction, axis
+    if kind == 1:
+        return link.length.lower * rng.uniform(0.0, 0.15) * direction, axis
+    reach = LinkReach(link)
+    positions = reach.sample(20, seed=int(rng.integers(2**31)))
+    position = positions[np.argmin(reach.margin(positions))]
+    along = np.array([0.0, 0.0, 1.0]) if kind < 5 else position / np.linalg.norm(position)
+    return position, along + 0.2 * axis
 
 
 def keeps_the_limits(link, shape):

@@ -131,7 +131,7 @@ def test_the_same_seed_gives_the_same_link():
 def test_no_pose_is_both_found_and_impossible():
     rng = np.random.default_rng(10)
     for link in (LINK, random_link(rng)):
-        poses = [hopeless_pose(link, rng) for _ in range(8)]
+        poses = [hopeless_pose(link, rng) for _ in range(5)]
         shapes = links_to_poses(link, *(np.array(part) for part in zip(*poses, strict=True)))
         reasons = [why_no_link(link, *pose) for pose in poses]
         assert sum(map(bool, reasons)) >= 2

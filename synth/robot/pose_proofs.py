@@ -45,9 +45,9 @@ if TYPE_CHECKING:
 
 _ROUNDING = 1e-7  # m and rad; a smaller excess proves nothing
 _INTERVALS = 32  # of the angle about axis 2, to begin with
-_HALVINGS = 9
+_HALVINGS = 16
 _DIRECTIONS = 600  # n, evenly on the sphere, the best of which is then improved
-_RINGS = (0.08, 0.03, 0.01, 0.004)  # steps of that improvement, rad
+_RINGS = (0.08, 0.03, 0.01, 0.003, 0.001)  # steps of that improvement, rad
 _AROUND = 24
 _BISECTIONS = 8
 _LONGEST = 3.0  # times as long: how far it is looked for a link that is long enough
@@ -94,7 +94,7 @@ def why_no_link(link: MalleableLink, position: ArrayLike, axis: ArrayLike) -> st
     longest = link.length.upper
     needed = _needed(as_long_as, longest, _LONGEST * longest, p, u)
     if needed is not None:
-        return _too_little("be", 1e3 * needed, 1e3 * longest, "mm long")
+        return _too_little("be", 1e3 * needed, 1e3 * longest, "mm", " long")
     return f"{_the_link(link)} ends at least {1e3 * short:.1f} mm away with axis 2 in this direction"
 
 
@@ -213,12 +213,11 @@ def _spread(count: int) -> FloatArray:
     return np.column_stack([rho * np.cos(turn), rho * np.sin(turn), z])
 
 
-def _too_little(verb: str, needed: float, limit: float, unit: str) -> str:
-    unit, _, rest = unit.partition(" ")
-    rest = f" {rest}" if rest else ""
-    return (
-        f"the link would have to {verb} more than {needed:.1f} {unit}{rest}; {limit:.1f} {unit} is its limit"
-    )
+def _too_little(verb: str, needed: float, limit: float, unit: str, what: str = "") -> str:
+    """Return by how much a limit is too little, with as many digits as tell the two numbers apart."""
+    digits = next((n for n in range(1, 6) if f"{needed:.{n}f}" != f"{limit:.{n}f}"), 6)
+    more, most = f"{needed:.{digits}f}", f"{limit:.{digits}f}"
+    return f"the link would have to {verb} more than {more} {unit}{what}; {most} {unit} is its limit"
 
 
 def _the_link(link: MalleableLink) -> str:

@@ -17,7 +17,14 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from planted import ROBOT
-from planted_poses import hopeless_pose, keeps_the_limits, links, missed_by, planted_poses
+from planted_poses import (
+    hopeless_pose,
+    keeps_the_limits,
+    links,
+    missed_by,
+    planted_poses,
+    stiff_link,
+)
 from scipy.spatial import cKDTree
 from test_robot_reach import RADIUS, RATIOS, random_ends, reach_of, two_piece_ends
 
@@ -58,7 +65,7 @@ def impossible(count: int) -> None:
     proven = found = 0
     words: dict[str, int] = {}
     while proven < count:
-        for link in links(2, rng):
+        for link in (*links(2, rng), stiff_link(rng)):
             candidates = [hopeless_pose(link, rng) for _ in range(PER_LINK)]
             reasons = [why_no_link(link, *pose) for pose in candidates]
             poses = [pose for pose, reason in zip(candidates, reasons, strict=True) if reason]
