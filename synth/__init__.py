@@ -21,7 +21,17 @@ if TYPE_CHECKING:
     from synth.export import solution_to_json, write_files
     from synth.geometry import Box, Capsule
     from synth.guide import Guide, make_guide
-    from synth.robot import PRESETS, Arm, BasePose, LinkShape, Robot, Workspace
+    from synth.robot import (
+        PRESETS,
+        Arm,
+        BasePose,
+        LinkShape,
+        Robot,
+        Workspace,
+        link_to_pose,
+        links_to_poses,
+        why_no_link,
+    )
     from synth.synthesis import NotFoundError, Solution, Status, solve, verify
     from synth.task import Objective, Obstacle, PointTarget, Task, Topology, load_robot, load_task, parse_task
 
@@ -30,7 +40,17 @@ _ROOMS = {
     "export": ("solution_to_json", "write_files"),
     "geometry": ("Box", "Capsule"),
     "guide": ("Guide", "make_guide"),
-    "robot": ("PRESETS", "Arm", "BasePose", "LinkShape", "Robot", "Workspace"),
+    "robot": (
+        "PRESETS",
+        "Arm",
+        "BasePose",
+        "LinkShape",
+        "Robot",
+        "Workspace",
+        "link_to_pose",
+        "links_to_poses",
+        "why_no_link",
+    ),
     "synthesis": ("NotFoundError", "Solution", "Status", "solve", "verify"),
     "task": (
         "Objective",
@@ -69,6 +89,8 @@ __all__ = [
     "Topology",
     "Workspace",
     "__version__",
+    "link_to_pose",
+    "links_to_poses",
     "load_robot",
     "load_task",
     "make_guide",
@@ -76,6 +98,7 @@ __all__ = [
     "solution_to_json",
     "solve",
     "verify",
+    "why_no_link",
     "write_files",
 ]
 

@@ -7,19 +7,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.robot import Arm, BasePose
-from synth.synthesis.population import Population, into_limits
+from synth.robot import ANYWHERE, Arm, BasePose, Interval
+from synth.robot.arc_chains import ArcChains
+from synth.robot.chain_steps import improved
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from synth.arrays import FloatArray
     from synth.robot import Robot
     from synth.task.measured import MeasuredDistances
 
 PAIRS = ("d13", "d14", "d23", "d24")
+_ARCS = 4
 _DRAWN = 30_000
 _STARTS = 64
-_ITERATIONS = 80
-_DIFFERENCE = 1e-6  # step of the finite differences over the unknowns, which are of order one
+_STEPS = 80
 _ROUNDING = 2e-8  # m
 _LENGTH_SLACK = 1e-9
 # How closely distances that are aimed at are met, m: near parallel axes 1e-6 would still be 1 deg.
@@ -70,71 +73,77 @@ def fit_link(
     """
     k = [distances.names.index(name) for name in PAIRS]
     lower, upper = distances.lower[k], distances.upper[k]
-    population = Population.sample(robot, _DRAWN, rng)
-    apart = _in_any_frame(_distances(population)) - _in_any_frame(0.5 * (lower + upper))
-    nearest = np.argsort(np.linalg.norm(apart, axis=1), kind="stable")[:_STARTS]
-    population = population.take(nearest)
+    chains = ArcChains(robot.link, _ARCS)
+    drawn = chains.random(_DRAWN, rng)
+    x = np.column_stack([drawn, np.zeros(_DRAWN)])
+    d, _ = _Bounds(robot, lower, upper).distances(chains, x)
+    apart = _in_any_frame(d) - _in_any_frame(0.5 * (lower + upper))
+    x = x[np.argsort(np.linalg.norm(apart, axis=1), kind="stable")[:_STARTS]]
     obstacle = _obstacle(robot, lower[2:])
     if aim is not None:
-        fit = _best(_improved(population, aim - _AIM, aim + _AIM), aim, aim)
+        fit = _best(chains, _Bounds(robot, aim - _AIM, aim + _AIM), x, aim, aim)
         if fit.found:
             return fit
-    return replace(_best(_improved(population, lower, upper), lower, upper), obstacle=obstacle)
+    return replace(_best(chains, _Bounds(robot, lower, upper), x, lower, upper), obstacle=obstacle)
 
 
-def _best(population: Population, lower: FloatArray, upper: FloatArray) -> LinkFit:
-    """Return the gentlest shape within the bounds or, if there is none, the nearest one."""
-    arms = [population.arm(index, BasePose()) for index in range(len(population.unknowns))]
+@dataclass(frozen=True, eq=False)
+class _Bounds:
+    """Bounds of d13, d14, d23, d24 as an aim of chains, the same for each."""
+
+    robot: Robot
+    lower: FloatArray
+    upper: FloatArray
+
+    @property
+    def theta1(self) -> Interval:
+        """Anywhere: joint 1 changes no distance."""
+        return ANYWHERE
+
+    def take(self, rows: NDArray[np.intp]) -> _Bounds:
+        """Return the aim of some of the rows."""
+        del rows
+        return self
+
+    def distances(self, chains: ArcChains, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return d13, d14, d23, d24 of chains, shape (n, 4), m, and their derivatives by the unknowns."""
+        radius, robot, ends = self.robot.link.min_bend_radius, self.robot, chains.ends(x[:, :-1])
+        u, p1 = ends.frame[..., 0], np.array([0.0, 0.0, -robot.d12])
+        about = np.cross(ends.rotation, u[..., None], axis=1)
+        d, slopes = [], []
+        for base in (p1, np.zeros(3)):
+            for along in (-robot.tip_offset, robot.d34 - robot.tip_offset):
+                v = radius * ends.position + along * u - base
+                d.append(np.linalg.norm(v, axis=1))
+                slopes.append(np.einsum("ni,nij->nj", v, radius * ends.d_position + along * about))
+        distances = np.stack(d, axis=1)
+        slope = np.stack(slopes, axis=1) / np.maximum(distances, 1e-12)[..., None]
+        return distances, np.concatenate([slope, np.zeros((*distances.shape, 1))], axis=-1)
+
+    def off(self, chains: ArcChains, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return how far distances are beyond their bounds, in bend radii, and the derivatives."""
+        d, slope = self.distances(chains, x)
+        off = d - np.clip(d, self.lower, self.upper)
+        radius = self.robot.link.min_bend_radius
+        return off / radius, slope * (off != 0.0)[..., None] / radius  # within its bounds a distance is free
+
+
+def _best(chains: ArcChains, bounds: _Bounds, x: FloatArray, lower: FloatArray, upper: FloatArray) -> LinkFit:
+    """Return the gentlest of the shapes improved to keep bounds or, if none does, the nearest one."""
+    robot = bounds.robot
+    x, _ = improved(chains, bounds, x, _STEPS)
+    rigid = robot.rigid_link
+    arms = [Arm(robot, chains.shape(one), rigid.d35.lower, rigid.d45.lower, BasePose()) for one in x[:, :-1]]
     beyond = np.array([_beyond(arm, lower, upper) for arm in arms])
-    energy = np.where(beyond == 0.0, population.bending, np.inf)
+    energy = np.where(beyond == 0.0, chains.energy(x[:, :-1]), np.inf)
     best = int(np.argmin(energy) if np.isfinite(energy).any() else np.argmin(beyond))
     return LinkFit(arms[best], float(beyond[best]))
-
-
-def _distances(population: Population) -> FloatArray:
-    """Return d13, d14, d23, d24 of shapes, (..., 4), m."""
-    robot = population.robot
-    frame, end = population.end
-    p3 = end - robot.tip_offset * frame[..., 0]
-    p4 = p3 + robot.d34 * frame[..., 0]
-    p2 = np.array([0.0, 0.0, robot.d12])
-    return np.stack([np.linalg.norm(v, axis=-1) for v in (p3, p4, p3 - p2, p4 - p2)], axis=-1)
 
 
 def _in_any_frame(d: FloatArray) -> FloatArray:
     """Return a length and three differences, which the short baselines make worth ten times as much."""
     d13, d14, d23, d24 = np.moveaxis(d, -1, 0)
     return np.stack([d13, 10.0 * (d14 - d13), 10.0 * (d23 - d13), 10.0 * (d24 - d14)], axis=-1)
-
-
-def _improved(population: Population, lower: FloatArray, upper: FloatArray) -> Population:
-    robot, x = population.robot, population.unknowns
-    count = x.shape[-1]
-    damping = np.full(len(x), 1e-3)
-    off = _off(population, lower, upper)
-    for _ in range(_ITERATIONS):
-        if not off.any():
-            break
-        nearby = _distances(Population(robot, x[:, None] + _DIFFERENCE * np.eye(count)))
-        jacobian = (nearby - _distances(Population(robot, x))[:, None]) / _DIFFERENCE
-        jacobian = jacobian * (off != 0.0)[:, None]  # within its bounds a distance is free
-        normal = np.einsum("apk,aqk->apq", jacobian, jacobian)
-        slope = np.einsum("apk,ak->ap", jacobian, off)
-        diagonal = np.einsum("app->ap", normal)
-        scale = diagonal + 1e-3 * diagonal.max(axis=1, keepdims=True) + 1e-12
-        damped = normal + damping[:, None, None] * scale[:, :, None] * np.eye(count)
-        step = -np.linalg.solve(damped, slope[..., None])[..., 0]
-        moved = into_limits(robot, x + step)
-        moved_off = _off(Population(robot, moved), lower, upper)
-        better = np.sum(moved_off**2, axis=1) < np.sum(off**2, axis=1)
-        x, off = np.where(better[:, None], moved, x), np.where(better[:, None], moved_off, off)
-        damping = np.clip(np.where(better, 0.2 * damping, 8.0 * damping), 1e-9, 1e9)
-    return Population(robot, x)
-
-
-def _off(population: Population, lower: FloatArray, upper: FloatArray) -> FloatArray:
-    d = _distances(population)
-    return np.asarray(d - np.clip(d, lower, upper))
 
 
 def _beyond(arm: Arm, lower: FloatArray, upper: FloatArray) -> float:

@@ -3,15 +3,19 @@
 from synth.robot.arm import Arm, JointBranches
 from synth.robot.base import BasePose
 from synth.robot.clearance import CLEAR, MOST_CLEARANCE, ArmBody, turned
+from synth.robot.end_pose import ANYWHERE, PoseMiss, pose_miss
 from synth.robot.hardware import Interval, JointLimits, MalleableLink, RigidLink, Robot
 from synth.robot.kinematics import Kinematics
 from synth.robot.link import LinkShape, arc_motion, chain_end, chain_points
+from synth.robot.pose_proofs import why_no_link
+from synth.robot.pose_search import link_to_pose, links_to_poses
 from synth.robot.presets import PRESETS
 from synth.robot.reach import LinkReach
 from synth.robot.turn import into_turn
 from synth.robot.workspace import SurfaceMesh, Workspace
 
 __all__ = [
+    "ANYWHERE",
     "CLEAR",
     "MOST_CLEARANCE",
     "PRESETS",
@@ -25,6 +29,7 @@ __all__ = [
     "LinkReach",
     "LinkShape",
     "MalleableLink",
+    "PoseMiss",
     "RigidLink",
     "Robot",
     "SurfaceMesh",
@@ -33,5 +38,9 @@ __all__ = [
     "chain_end",
     "chain_points",
     "into_turn",
+    "link_to_pose",
+    "links_to_poses",
+    "pose_miss",
     "turned",
+    "why_no_link",
 ]
