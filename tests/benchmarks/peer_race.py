@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 REACHED = 1e-3  # worst miss of a planted task that counts as reached, m
 EQUAL = 1.001  # RMS misses this close count as equal
+TIMES = 5  # a multi-start that is not told the goal ends when it has found its least miss so often
 CLOCKS = {"wall": time.perf_counter, "cpu": time.process_time}
 
 
@@ -58,6 +59,7 @@ class Race:
         budget: Time after which the method is stopped, s.
         seed: Seed of the method.
         clock: Name of the clock.
+        told: Whether the race ends as soon as the goal is reached. If not, the method must end it.
     """
 
     task: Task
@@ -65,6 +67,7 @@ class Race:
     budget: float
     seed: int
     clock: str = "wall"
+    told: bool = True
     best: Result = NOTHING
     best_cost: float = math.inf
     rng: np.random.Generator = field(init=False)
@@ -74,6 +77,7 @@ class Race:
         self.targets = np.ascontiguousarray(self.task.positions)
         self.constants = compiled_miss.constants(self.task)
         self.arguments = (self.constants, self.targets)
+        self._least, self._times, self._finished = math.inf, 0, False
         self._began = CLOCKS[self.clock]()
 
     @property
@@ -82,8 +86,21 @@ class Race:
 
     @property
     def over(self) -> bool:
-        """Whether the method may stop: the goal is reached, or the time is up."""
-        return self.best.reached or self.seconds > self.budget
+        """Whether the method may stop."""
+        return (self.told and self.best.reached) or self._finished or self.seconds > self.budget
+
+    def finish(self) -> None:
+        """Say that the method has come to its own end; one that is told the goal starts again."""
+        self._finished = not self.told
+
+    def count_minimum(self, cost: float) -> None:
+        """Take note of where a local search ended, m^2: a multi-start ends when its least comes again."""
+        rms = math.sqrt(cost)
+        if rms < self._least / EQUAL:
+            self._least, self._times = rms, 0
+        self._times += rms <= self._least * EQUAL
+        if self._times == TIMES:
+            self.finish()
 
     @property
     def enough(self) -> float:
@@ -92,7 +109,7 @@ class Race:
 
     def is_enough(self, x: np.ndarray, cost: float) -> bool:
         """Whether a shape reaches the goal, by the compiled miss."""
-        if cost > self.enough:
+        if not self.told or cost > self.enough:
             return False
         return self.goal is not None or compiled_miss.misses(x, *self.arguments).max() <= REACHED
 
@@ -117,6 +134,7 @@ class Race:
     def offer_misses(self, misses: np.ndarray) -> bool:
         """Take misses, m, as they are; return whether the method may stop."""
         rms, worst = math.sqrt(np.mean(misses**2)), float(misses.max())
+        self.count_minimum(rms**2)
         if (rms if self.goal else worst) < (self.best.rms if self.goal else self.best.worst):
             reached = rms <= self.goal * EQUAL if self.goal else worst <= REACHED
             self.best = Result(rms, worst, self.seconds, reached)
@@ -128,7 +146,7 @@ class Race:
 
     def result(self) -> Result:
         """Return what was reached; a shape that did not reach the goal is judged now."""
-        if self.best.reached:
+        if self.told and self.best.reached:
             return self.best
         seconds = self.seconds
         if math.isfinite(self.best_cost):

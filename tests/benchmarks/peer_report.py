@@ -23,10 +23,9 @@ if TYPE_CHECKING:
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE, PICTURE = DOCS / "peers.md", DOCS / "pictures" / "peers.svg"
 _BEGIN, _END = "<!-- written by tests/benchmarks/peers.py -->", "<!-- end -->"
-_HEAD = (
-    "method", "planted: reached", "time, s", "ratio",
-    "noisy: equalled", "RMS over the least known: median, worst", "time, s", "ratio",
-)  # fmt: skip
+_NOISY = ["noisy: equalled", "RMS over the least known: median, worst", "time, s", "ratio"]
+_TOLD = ["method", "planted: reached", "time, s", "ratio", *_NOISY]
+_UNTOLD = ["method", *_NOISY]
 
 
 @dataclass(frozen=True)
@@ -37,6 +36,7 @@ class Outcome:
     seed: int
     targets: int
     results: dict[str, Result]
+    untold: dict[str, Result]  # the same on a noisy task, but run to their own ends
 
 
 @dataclass(frozen=True)
@@ -65,31 +65,37 @@ class Report:
     def noisy(self) -> list[Outcome]:
         return [outcome for outcome in self.outcomes if not outcome.kind]
 
-    def over(self, name: str) -> list[float]:
+    def over(self, name: str, part: str = "results") -> list[float]:
         """Return by how much a method misses more than the least known, as fractions."""
-        return [outcome.results[name].rms / self.least[outcome.seed] - 1.0 for outcome in self.noisy]
+        return [getattr(o, part)[name].rms / self.least[o.seed] - 1.0 for o in self.noisy]
 
     def text(self) -> str:
-        """Return the table in Markdown, which reads well on the screen, too, and what follows from it."""
-        cells = [_HEAD, *(self._cells(name) for name in self.outcomes[0].results)]
-        widths = [max(len(line[column]) for line in cells) for column in range(len(_HEAD))]
-        lines = [
-            "| " + " | ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)) + " |"
-            for line in cells
-        ]
-        rule = "|" + "|".join("-" * (width + 2) for width in widths) + "|"
-        return "\n".join([lines[0], rule, *lines[1:], "", *(f"- {line}" for line in self._aims())])
+        """Return the tables in Markdown, which read well on the screen, too, and what follows from them."""
+        return "\n".join(
+            [
+                "Told the goal, and stopped when it is reached:\n",
+                *_table(_TOLD, [self._told(name) for name in self.outcomes[0].results]),
+                "\nNot told, each run to its own end, noisy tasks only:\n",
+                *_table(_UNTOLD, [self._untold(name) for name in self.outcomes[0].results]),
+                "",
+                *(f"- {line}" for line in self._aims()),
+            ]
+        )
 
-    def _cells(self, name: str) -> tuple[str, ...]:
-        over = self.over(name)
-        equalled, *time_and_ratio = self._reached_time_ratio(self.noisy, name)
-        excess = f"{_percent(float(np.median(over)))}, {_percent(max(over))}"
-        return (name, *self._reached_time_ratio(self.planted, name), equalled, excess, *time_and_ratio)
+    def _told(self, name: str) -> list[str]:
+        planted, noisy = self._figures(self.planted, name), self._figures(self.noisy, name)
+        return [name, *planted, noisy[0], _excess(self.over(name)), *noisy[1:]]
 
-    def _reached_time_ratio(self, outcomes: list[Outcome], name: str) -> tuple[str, str, str]:
-        results = [outcome.results[name] for outcome in outcomes]
-        ratio = np.median([o.results[name].time / o.results[self.ours].seconds for o in outcomes])
-        time = np.median([result.time for result in results])
+    def _untold(self, name: str) -> list[str]:
+        reached, *time_and_ratio = self._figures(self.noisy, name, "untold")
+        return [name, reached, _excess(self.over(name, "untold")), *time_and_ratio]
+
+    def _figures(self, outcomes: list[Outcome], name: str, part: str = "results") -> tuple[str, str, str]:
+        """Return in how many tasks a method reached the goal, its median time, and its median ratio."""
+        results = [getattr(outcome, part)[name] for outcome in outcomes]
+        times = [result.time if part == "results" else result.seconds for result in results]
+        ours = [outcome.results[self.ours].seconds for outcome in outcomes]
+        time, ratio = np.median(times), np.median(np.divide(times, ours))
         return (
             f"{sum(result.reached for result in results)} of {len(results)}",
             f"{time:.3g}" if math.isfinite(time) else f"> {self.budget:g}",
@@ -99,16 +105,20 @@ class Report:
     def _aims(self) -> list[str]:
         """Return how `synth` stands to the fastest peer of each task, and to the least miss."""
         lines = []
-        for title, outcomes in (("planted", self.planted), ("noisy", self.noisy)):
+        for title, outcomes, part in (
+            ("planted", self.planted, "results"),
+            ("noisy, told the goal", self.noisy, "results"),
+            ("noisy, not told", self.noisy, "untold"),
+        ):
             others = self.not_arms | {self.ours}
             ratios = [
-                min(result.time for name, result in outcome.results.items() if name not in others)
-                / outcome.results[self.ours].seconds
-                for outcome in outcomes
+                min(result.time for name, result in getattr(o, part).items() if name not in others)
+                / o.results[self.ours].seconds
+                for o in outcomes
             ]
             lines.append(
                 f"{title}: the fastest peer of each task takes {np.median(ratios):.3g} times as long as "
-                f"{self.ours} (median of {len(ratios)} tasks)."
+                f"{self.ours} for the same miss (median of {len(ratios)} tasks)."
             )
         over = self.over(self.ours)
         lines.append(
@@ -134,6 +144,20 @@ class Report:
         axes.grid(alpha=0.3)
         figure.legend(loc="outside right upper", fontsize=8, frameon=False)
         return figure
+
+
+def _table(head: list[str], rows: list[list[str]]) -> list[str]:
+    """Return the lines of a table in Markdown."""
+    widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
+    lines = [
+        "| " + " | ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)) + " |"
+        for line in (head, *rows)
+    ]
+    return [lines[0], "|" + "|".join("-" * (width + 2) for width in widths) + "|", *lines[1:]]
+
+
+def _excess(over: list[float]) -> str:
+    return f"{_percent(float(np.median(over)))}, {_percent(max(over))}"
 
 
 def _percent(fraction: float) -> str:
