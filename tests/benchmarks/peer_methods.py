@@ -19,6 +19,7 @@ from pymoo.termination.default import DefaultSingleObjectiveTermination
 from scipy.optimize import differential_evolution, least_squares, minimize
 
 from synth.errors import SolverError
+from synth.synthesis import solve
 from synth.synthesis.nlp import SynthesisNlp
 from synth.synthesis.population import ARCS
 
@@ -170,6 +171,15 @@ def lifted(race: Race) -> None:
                 return
 
 
+def first_shape(race: Race) -> None:
+    """`synth.solve` itself, stopped when every target is within its tolerance."""
+    found: list[bool] = []
+    solution = solve(
+        race.task, progress=lambda progress: found.append(progress.found), stop=lambda: True in found
+    )
+    race.offer_arm(solution.best.arm, solution.best.verification.joints)
+
+
 METHODS: dict[str, Method] = {
     "differential evolution (scipy)": evolution,
     "CMA-ES (cma)": cma_es,
@@ -177,7 +187,7 @@ METHODS: dict[str, Method] = {
     "multi-start Ipopt, raw Gamma": raw_gamma,
     "multi-start Ipopt, lifted": lifted,
     "multi-start least squares (scipy)": least_squares_differences,
-    "the same, Jacobian compiled": least_squares_compiled,
+    "least squares, Jacobian compiled": least_squares_compiled,
 }
 # Its answers are surfaces, judged by the distance to them; limits of link and joints do not count.
 NOT_AN_ARM = frozenset({"multi-start Ipopt, raw Gamma"})

@@ -47,14 +47,14 @@ class Report:
         outcomes: One for each task.
         least: The least RMS miss known of each noisy task, m.
         ours: The method that the others are compared with.
-        not_arms: Methods whose answers are no arms; they do not count as the fastest peer.
+        no_peers: Methods that do not count as the fastest peer.
         budget: Time after which a method was stopped, s.
     """
 
     outcomes: list[Outcome]
     least: dict[int, float]
     ours: str
-    not_arms: frozenset[str]
+    no_peers: frozenset[str]
     budget: float
 
     @property
@@ -110,14 +110,13 @@ class Report:
             ("noisy, told the goal", self.noisy, "results"),
             ("noisy, not told", self.noisy, "untold"),
         ):
-            others = self.not_arms | {self.ours}
             ratios = [
-                min(result.time for name, result in getattr(o, part).items() if name not in others)
+                min(result.time for name, result in getattr(o, part).items() if name not in self.no_peers)
                 / o.results[self.ours].seconds
                 for o in outcomes
             ]
             lines.append(
-                f"{title}: the fastest peer of each task takes {np.median(ratios):.3g} times as long as "
+                f"{title}: the fastest peer of each task takes {np.median(ratios):.2g} times as long as "
                 f"{self.ours} for the same miss (median of {len(ratios)} tasks)."
             )
         over = self.over(self.ours)
@@ -132,7 +131,7 @@ class Report:
         figure = Figure(figsize=(7.5, 4.4), layout="constrained")
         axes = figure.add_subplot()
         counts = sorted({outcome.kind for outcome in self.planted})
-        for name, marker in zip(self.outcomes[0].results, "osD^v<>Pp*", strict=False):
+        for name, marker in zip(self.outcomes[0].results, "o.sD^v<>P*", strict=False):
             times = [np.median([o.results[name].time for o in self.planted if o.kind == n]) for n in counts]
             bold = {"linewidth": 2.5, "color": "black"} if name == self.ours else {"linewidth": 1.2}
             seen = np.where(np.isfinite(times), times, np.nan)
