@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from compiled_miss import UNKNOWNS, closest, depth, follow, point
+from compiled_link import PENALTY, TUBE, UNKNOWNS, depth, follow, point, rod_depth
+from compiled_miss import closest
 from numba import njit
 
 _DIFFERENCE = 1e-7  # step of the differences over the unknowns, which are of order one
@@ -14,17 +15,17 @@ _TURN = 1e-4  # rad, to either side
 
 @njit(cache=True)
 def residuals(x, k, targets):
-    """Return P5 - target over sqrt(n) for each target, and the depths: shape (3 n + 3,)."""
-    pose, joints = np.empty(12), np.empty((len(targets), 2))
-    follow(x, k, pose)
-    closest(pose, k, targets, joints)
-    return _rows(pose, k, targets, joints)
+    """Return P5 - target over sqrt(n) for each target, and all depths: shape (4 n + 4,)."""
+    pose, tube, joints = np.empty(13), np.empty((TUBE, 4)), np.empty((len(targets), 2))
+    follow(x, k, pose, tube)
+    closest(pose, k, tube, targets, joints)
+    return _rows(pose, k, tube, targets, joints)
 
 
 @njit(cache=True)
-def _rows(pose, k, targets, joints):
+def _rows(pose, k, tube, targets, joints):
     n = len(targets)
-    rows = np.empty(3 * n + 3)
+    rows = np.empty(4 * n + 4)
     scale = 1.0 / math.sqrt(n)
     for i in range(n):
         p5 = point(pose, k, joints[i, 0], joints[i, 1])
@@ -32,6 +33,9 @@ def _rows(pose, k, targets, joints):
             rows[3 * i + axis] = scale * (p5[axis] - targets[i, axis])
     for part in range(3):
         rows[3 * n + part] = depth(pose[9 + part], k[13])
+    rows[3 * n + 3] = PENALTY * pose[12]
+    for i in range(n):
+        rows[3 * n + 4 + i] = scale * PENALTY * rod_depth(pose, k, tube, joints[i, 1])
     return rows
 
 
@@ -39,16 +43,17 @@ def _rows(pose, k, targets, joints):
 def jacobian(x, k, targets):
     """Return the derivatives of `residuals` across the directions in which the joints are free."""
     n = len(targets)
-    pose, moved, joints = np.empty(12), np.empty(12), np.empty((n, 2))
-    follow(x, k, pose)
-    closest(pose, k, targets, joints)
-    rows = _rows(pose, k, targets, joints)
-    slopes = np.empty((3 * n + 3, UNKNOWNS))
+    pose, tube, joints = np.empty(13), np.empty((TUBE, 4)), np.empty((n, 2))
+    moved, moved_tube = np.empty(13), np.empty((TUBE, 4))
+    follow(x, k, pose, tube)
+    closest(pose, k, tube, targets, joints)
+    rows = _rows(pose, k, tube, targets, joints)
+    slopes = np.empty((4 * n + 4, UNKNOWNS))
     nearby = x.copy()
     for unknown in range(UNKNOWNS):
         nearby[unknown] = x[unknown] + _DIFFERENCE
-        follow(nearby, k, moved)
-        slopes[:, unknown] = (_rows(moved, k, targets, joints) - rows) / _DIFFERENCE
+        follow(nearby, k, moved, moved_tube)
+        slopes[:, unknown] = (_rows(moved, k, moved_tube, targets, joints) - rows) / _DIFFERENCE
         nearby[unknown] = x[unknown]
     for i in range(n):
         theta1, theta2 = joints[i]

@@ -8,6 +8,7 @@ from collections.abc import Callable
 import cma
 import compiled_miss
 import numpy as np
+from compiled_link import bounds
 from compiled_residuals import jacobian, residuals
 from peer_gamma import raw_gamma
 from peer_race import Race
@@ -32,7 +33,7 @@ def evolution(race: Race) -> None:
     best1bin. Eight members an unknown (default 15), recombination 0.9 (0.7), dither (0.3, 0.8) (0.5, 1), tol
     0.1 (0.01, the polish does the rest) took a third of the time of the defaults, and succeeded as often.
     """
-    box = list(zip(*compiled_miss.bounds(race.task), strict=True))
+    box = list(zip(*bounds(race.task), strict=True))
 
     def watch(intermediate_result) -> bool:
         return race.offer(intermediate_result.x, intermediate_result.fun)
@@ -60,7 +61,7 @@ def _polish(race: Race, x: np.ndarray) -> None:
         if race.offer(intermediate_result.x, intermediate_result.fun):
             raise StopIteration
 
-    box = list(zip(*compiled_miss.bounds(race.task), strict=True))
+    box = list(zip(*bounds(race.task), strict=True))
     answer = minimize(
         value_and_slope, x, jac=True, method="L-BFGS-B", bounds=box, callback=watch,
         options={"ftol": 1e-14, "gtol": 1e-12, "maxiter": 1000},
@@ -70,7 +71,7 @@ def _polish(race: Race, x: np.ndarray) -> None:
 
 def cma_es(race: Race) -> None:
     """CMA-ES with BIPOP restarts: unknowns scaled to one box, first step 0.3 of its width."""
-    lower, upper = compiled_miss.bounds(race.task)
+    lower, upper = bounds(race.task)
     width = upper - lower
 
     def costs(scaled):
@@ -100,7 +101,7 @@ class _Shapes(Problem):
     """The mean squared miss over the box of the unknowns, for pymoo."""
 
     def __init__(self, race: Race) -> None:
-        lower, upper = compiled_miss.bounds(race.task)
+        lower, upper = bounds(race.task)
         super().__init__(n_var=len(lower), n_obj=1, xl=lower, xu=upper)
         self._race = race
 
@@ -133,7 +134,7 @@ def genetic(race: Race) -> None:
 
 def least_squares_differences(race: Race) -> None:
     """Multi-start scipy least_squares as it comes: trf within the box, Jacobian by its own differences."""
-    box = compiled_miss.bounds(race.task)
+    box = bounds(race.task)
     while not race.over:
         for start in race.starts():
             inside = np.clip(start, box[0] + 1e-6, box[1] - 1e-6)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import compiled_miss
 import numpy as np
-from compiled_miss import UNKNOWNS
+from compiled_link import UNKNOWNS, constants
 from compiled_residuals import jacobian, residuals
 
 from synth.synthesis.population import Population, into_limits
@@ -75,7 +75,7 @@ class Race:
     def __post_init__(self) -> None:
         self.rng = np.random.default_rng(self.seed)
         self.targets = np.ascontiguousarray(self.task.positions)
-        self.constants = compiled_miss.constants(self.task)
+        self.constants = constants(self.task)
         self.arguments = (self.constants, self.targets)
         self._least, self._times, self._finished = math.inf, 0, False
         self._began = CLOCKS[self.clock]()

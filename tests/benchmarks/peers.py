@@ -15,6 +15,7 @@ import argparse
 import math
 import sys
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,6 +25,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import compiled_miss
+from compiled_link import constants
 from noisy import known, remember
 from peer_gamma import scip_bound
 from peer_methods import METHODS, NOT_AN_ARM, first_shape
@@ -48,12 +50,17 @@ def task_of(kind: int, seed: int) -> Task:
 
 
 def model_difference(task: Task, shapes: int = 20) -> float:
-    """Return by how much the compiled misses of random shapes differ from those of `synth`, m."""
+    """Return by how much the compiled misses of random shapes differ from those of `synth`, m.
+
+    The links are as thin as a thread here: how thick ones keep clear, the independent check judges.
+    """
     population = Population.sample(task.robot, shapes, np.random.default_rng(0))
-    targets, constants = np.ascontiguousarray(task.positions), compiled_miss.constants(task)
+    thread = replace(task.robot, link=replace(task.robot.link, diameter=-1.0))
+    targets = np.ascontiguousarray(task.positions)
+    known_to_them = constants(replace(task, robot=thread))
     return max(
         np.abs(
-            compiled_miss.misses(np.array(population.unknowns[i]), constants, targets)
+            compiled_miss.misses(np.array(population.unknowns[i]), known_to_them, targets)
             - population.arm(i, task.base).closest_joints(task.positions)[1]
         ).max()
         for i in range(shapes)
