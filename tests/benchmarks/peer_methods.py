@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import warnings
 from collections.abc import Callable
 
@@ -21,7 +22,7 @@ from scipy.optimize import differential_evolution, least_squares, minimize
 
 from synth.errors import SolverError
 from synth.synthesis import solve
-from synth.synthesis.nlp import SynthesisNlp
+from synth.synthesis.nlp import Structure, shared_nlp
 from synth.synthesis.population import ARCS
 
 Method = Callable[[Race], None]
@@ -159,13 +160,13 @@ def least_squares_compiled(race: Race) -> None:
 
 def lifted(race: Race) -> None:
     """Multi-start Ipopt on the lifted form, `synth`'s own program, from random shapes."""
-    nlp = SynthesisNlp(race.task, ARCS, lambda: race.seconds > race.budget)
+    nlp = shared_nlp(Structure.of(race.task), ARCS, False, threading.get_ident())
     while not race.over:
         for start in race.starts():
             arm = race.arm(start)
             joints, _ = arm.closest_joints(race.targets)
             try:
-                answer = nlp.solve(arm, joints)
+                answer = nlp.solve(race.task, arm, joints, lambda: race.seconds > race.budget)
             except SolverError:
                 continue
             if race.offer_arm(answer.arm, answer.joints):
