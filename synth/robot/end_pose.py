@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.robot.hardware import Interval
-from synth.robot.kinematics import into_turn
+from synth.robot.turn import into_turn
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
