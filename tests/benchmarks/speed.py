@@ -21,10 +21,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-ROOT = Path(__file__).parents[2]
-sys.path.insert(0, str(ROOT / "tests"))
+sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from planted import planted_task  # noqa: E402 - beside the tests
+from planted import planted_task
 from test_many_targets import scanned
 
 from synth.synthesis import Solution, solve
@@ -34,6 +33,7 @@ if TYPE_CHECKING:
 
     from synth.task import Task
 
+ROOT = Path(__file__).parents[2]
 EXAMPLE = ROOT / "problems" / "four-targets" / "task.yaml"
 NEIGHBOUR_MOVES = 0.003  # m
 
