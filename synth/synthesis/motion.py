@@ -125,6 +125,7 @@ class _Room:
         self._limits = task.robot.joint_limits
         self._solids: list[Solid] = list(task.solids)
         self._of_rod = list(self._solids)
+        self._floor = -np.inf if task.floor is None else task.floor
         if task.floor is not None:
             # Joint 1 keeps all heights, so the tube stays where it is over the floor.
             reach = 4.0 * (task.robot.d12 + design.arm.shape.length + self._body.rod_length)
@@ -150,11 +151,23 @@ class _Room:
     def clear(self, start: FloatArray, end: FloatArray) -> NDArray[np.bool_]:
         """Return whether straight ways, shape (n, 2), are certainly clear."""
         body = self._body
-        least = body.from_obstacles(start, self._of_rod, end=end)
-        tube = least[:, : len(self._solids), 0].min(axis=1, initial=np.inf)
-        rod = least[..., 1].min(axis=1, initial=np.inf)
+        least = body.from_obstacles(start, self._solids, end=end).min(axis=(1, 2), initial=np.inf)
         itself = body.rod_from_tube(start[:, 1], end[:, 1])
-        return np.asarray(np.minimum(np.minimum(tube, rod), itself) >= CLEAR)
+        over_floor = self._over_floor(start[:, 1], end[:, 1])
+        return np.asarray(np.minimum(np.minimum(least, itself), over_floor) >= CLEAR)
+
+    def _over_floor(self, start: FloatArray, end: FloatArray) -> FloatArray:
+        """Return how far the rod stays over the floor as theta2 goes from start to end, shape (n,), m.
+
+        The height of P5 is z = c_z + R (sin(theta2) v_z - cos(theta2) t_z), least at atan2(-v_z, t_z).
+        """
+        body, kinematics = self._body, self._body.arm.kinematics
+        lower, upper = np.minimum(start, end), np.maximum(start, end)
+        lowest = np.arctan2(-kinematics.frame[2, 1], kinematics.frame[2, 2])
+        lowest = lowest + 2.0 * np.pi * np.ceil((lower - lowest) / (2.0 * np.pi))
+        angles = np.stack([start, end, np.where(lowest <= upper, lowest, start)])
+        heights = kinematics.forward(0.0, angles)[..., 2].min(axis=0)
+        return np.asarray(np.minimum(heights, body.arm.end_frame[1][2]) - body.rod_radius - self._floor)
 
     def _way_around(self, start: FloatArray, end: FloatArray) -> FloatArray:
         """Return a way through the grid, straightened, or none."""
