@@ -64,17 +64,18 @@ class Start:
     joints: FloatArray
 
 
-def starts(task: Task, rng: np.random.Generator) -> Iterator[Start]:
+def starts(task: Task, rng: np.random.Generator, *, quick: bool = False) -> Iterator[Start]:
     """Yield distinct start points, the most promising first.
 
     Args:
         task: The task.
         rng: Source of randomness.
+        quick: Whether to end with what the first, small step finds.
 
     Yields:
         Start points; none where no random shape respects the limits and the floor.
     """
-    for start in _starts(_fewer_targets(task, rng), rng):
+    for start in _starts(_fewer_targets(task, rng), rng, quick=quick):
         joints = start.joints
         if len(joints) < len(task.targets):
             joints, _ = start.arm.closest_joints(task.table.positions)
@@ -89,7 +90,7 @@ def _fewer_targets(task: Task, rng: np.random.Generator) -> Task:
     return replace(task, targets=task.table.take(chosen))
 
 
-def _starts(task: Task, rng: np.random.Generator) -> Iterator[Start]:
+def _starts(task: Task, rng: np.random.Generator, *, quick: bool) -> Iterator[Start]:
     """Yield start points for a task of few targets, each step with more effort than the one before."""
     designs, after_hops = exact_designs(task) or (), None
     for size, shortlist, count in _STEPS:
@@ -109,6 +110,8 @@ def _starts(task: Task, rng: np.random.Generator) -> Iterator[Start]:
         if task.obstacles:
             refined = _wandered_clear(task, refined, rng)
         yield from itertools.islice(_distinct(task, refined), _STARTS_PER_STEP)
+        if quick:
+            return
         # The second step does not begin anew: what was hopped to from the first one goes into its hops.
         after_hops = hopped(task, refined if after_hops is None else better(refined, after_hops), rng)
         yield from itertools.islice(_distinct(task, after_hops), _STARTS_AFTER_HOPS)

@@ -177,10 +177,10 @@ class _Search:
                 break
         return self._found()
 
-    def run(self, most: int = _STARTS_AT_MOST) -> None:
-        """Polish start points until enough is found, or `most` are done, or the time is up."""
-        self.starts_at_most = self.starts + (_STARTS_WHEN_IMPOSSIBLE if self._impossible else most)
-        for start in self._start_points():
+    def run(self, most: int | None = None) -> None:
+        """Polish start points until enough is found, or the time is up; if `most`, quick ones, so many."""
+        self.starts_at_most = self.starts + (most or self._usual_starts)
+        for start in self._start_points(quick=most is not None):
             if self._out_of_time():
                 # A start that was not polished is better than nothing.
                 if not self.designs:
@@ -205,8 +205,12 @@ class _Search:
             self.task, status, message, reasons, self.seed, designs, self.starts, self.clock.timing()
         )
 
-    def _start_points(self) -> Iterator[Start]:
-        candidates = starts(self.part, np.random.default_rng(self.seed))
+    @property
+    def _usual_starts(self) -> int:
+        return _STARTS_WHEN_IMPOSSIBLE if self._impossible else _STARTS_AT_MOST
+
+    def _start_points(self, *, quick: bool) -> Iterator[Start]:
+        candidates = starts(self.part, np.random.default_rng(self.seed), quick=quick)
         while True:
             with self.clock.on("screening"):
                 start = next(candidates, None)
