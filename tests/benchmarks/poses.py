@@ -83,15 +83,15 @@ def impossible(count: int) -> None:
 def undecided(count: int) -> None:
     """Positions uniform in the reach of the position, axis 2 in any direction."""
     rng = np.random.default_rng(3)
-    hardware: list[tuple[str, list[MalleableLink], Interval]] = [
-        ("preset", [ROBOT.link], ANYWHERE),
-        ("other hardware", links(2 * count // PER_LINK, rng)[1::2], ANYWHERE),
-        ("preset, joint 1 at zero", [ROBOT.link], AT_ZERO),
+    hardware: list[tuple[str, list[MalleableLink], Interval, int]] = [
+        ("preset", [ROBOT.link], ANYWHERE, count),
+        ("other hardware", links(2 * count // PER_LINK, rng)[1::2], ANYWHERE, count),
+        ("preset, joint 1 at zero", [ROBOT.link], AT_ZERO, count // 5),
     ]
-    for name, some, theta1 in hardware:
+    for name, some, theta1, poses in hardware:
         found = proven = both = total = 0
         for link in some:
-            share = count // len(some)
+            share = poses // len(some)
             positions, axes = LinkReach(link).sample(share, seed=4), rng.normal(size=(share, 3))
             shapes = links_to_poses(link, positions, axes, theta1=theta1)
             for shape, position, axis in zip(shapes, positions, axes, strict=True):
