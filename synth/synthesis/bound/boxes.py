@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
-
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from synth.arrays import FloatArray
 
 # Charts of the half sphere u_y >= 0, after the faces of a cube: the middle's coordinate axis and sign, the
 # coordinate axis towards which alpha turns, the one towards which beta turns, and the least alpha.
@@ -37,15 +37,21 @@ class Boxes:
         chart: Number of the chart, shape (N,).
         middle: Middles, shape (N, 5), m and rad.
         half: Half the widths, shape (N, 5).
+        bound: What is known of the worst weighted miss: nowhere in the box is it less, shape (N,), m.
+        by_psi: Whether to cut psi, too: it keeps some target from its nearest branch, shape (N,).
     """
 
     chart: NDArray[np.intp]
     middle: FloatArray
     half: FloatArray
+    bound: FloatArray
+    by_psi: NDArray[np.bool_]
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "middle", frozen(self.middle))
-        object.__setattr__(self, "half", frozen(self.half))
+        for field in fields(self):
+            value = getattr(self, field.name)
+            object.__setattr__(self, field.name, value)
+            value.flags.writeable = False
 
     @classmethod
     def cover(cls, rho: float, heights: tuple[float, float]) -> Boxes:
@@ -54,23 +60,21 @@ class Boxes:
         quarter = 0.25 * math.pi
         lower = np.array([[0.0, heights[0], least, -quarter, -math.pi] for *_, least in _CHARTS])
         upper = np.array([[rho, heights[1], quarter, quarter, math.pi]] * count)
-        return cls(np.arange(count), 0.5 * (lower + upper), 0.5 * (upper - lower))
+        middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
+        return cls(np.arange(count), middle, half, np.zeros(count), np.zeros(count, dtype=bool))
 
     @classmethod
     def joined(cls, parts: list[Boxes]) -> Boxes:
         """Return the boxes of all parts, in order."""
-        return cls(
-            np.concatenate([part.chart for part in parts]),
-            np.concatenate([part.middle for part in parts]),
-            np.concatenate([part.half for part in parts]),
-        )
+        columns = (tuple(getattr(part, field.name) for field in fields(cls)) for part in parts)
+        return cls(*(np.concatenate(arrays) for arrays in zip(*columns, strict=True)))
 
     def __len__(self) -> int:
         return len(self.chart)
 
     def take(self, chosen: NDArray[np.intp] | NDArray[np.bool_] | slice) -> Boxes:
         """Return some of the boxes."""
-        return Boxes(self.chart[chosen], self.middle[chosen], self.half[chosen])
+        return Boxes(*(getattr(self, field.name)[chosen] for field in fields(self)))
 
     def halved(self, side: NDArray[np.intp]) -> Boxes:
         """Return both halves of each box, cut across a side, shape (N,): first all lower ones."""
@@ -78,17 +82,14 @@ class Boxes:
         half, shift = self.half.copy(), np.zeros_like(self.half)
         half[rows, side] *= 0.5
         shift[rows, side] = half[rows, side]
-        return Boxes(
-            np.concatenate([self.chart, self.chart]),
-            np.concatenate([self.middle - shift, self.middle + shift]),
-            np.concatenate([half, half]),
-        )
+        lower = replace(self, middle=self.middle - shift, half=half)
+        return Boxes.joined([lower, replace(self, middle=self.middle + shift, half=half)])
 
     def with_psi(self, lower: FloatArray, upper: FloatArray) -> Boxes:
         """Return the boxes with psi between other limits, shape (N,) each, rad."""
         middle, half = self.middle.copy(), self.half.copy()
         middle[:, 4], half[:, 4] = 0.5 * (lower + upper), 0.5 * (upper - lower)
-        return Boxes(self.chart, middle, half)
+        return replace(self, middle=middle, half=half)
 
     @cached_property
     def end(self) -> FloatArray:

@@ -3,24 +3,28 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.robot import LinkReach
+from synth.robot import Interval, LinkReach
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
+    from synth.robot import MalleableLink
     from synth.synthesis.bound.boxes import Boxes
     from synth.task import Task
 
-SLACK = 1e-9  # m and rad, granted to every limit: far above all rounding, far below all that matters
+# Granted to every limit, m and rad: the verification grants half of it, and rounding is far below.
+SLACK = 2e-6
 _SPACING = 0.02  # of the table of margins, in units of the link's length
 # `LinkReach.margin` takes the least distance from at least so many points of each curve of the boundary.
 _CURVE_POINTS = 721
+_SMALL_TURN = 0.15  # rad
+_DIRECTIONS = 3  # tried as that of the straight part of the link
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,18 +72,25 @@ class Limits:
     """What a task and its robot rule out, box by box."""
 
     task: Task
+    link: MalleableLink
     table: ReachTable
 
     @classmethod
     def of(cls, task: Task) -> Limits:
-        """Tabulate what does not depend on the box."""
-        return cls(task, ReachTable.of(LinkReach(task.robot.link)))
+        """Tabulate what does not depend on the box, for a link with a little more freedom."""
+        link = task.robot.link
+        free = replace(
+            link,
+            length=Interval(link.length.lower - SLACK, link.length.upper + SLACK),
+            min_bend_radius=link.min_bend_radius - SLACK,
+            max_total_bend=link.max_total_bend + SLACK,
+        )
+        return cls(task, free, ReachTable.of(LinkReach(free)))
 
     @property
     def most_bend(self) -> float:
         """Largest total bend of the link, rad."""
-        link = self.task.robot.link
-        return min(link.max_total_bend, link.length.upper * link.max_curvature)
+        return min(self.link.max_total_bend, self.link.length.upper * self.link.max_curvature)
 
     def allow_end(self, boxes: Boxes) -> NDArray[np.bool_]:
         """Whether some shape of each box may end within the reach and with P3 and P4 above the floor.
@@ -113,7 +124,7 @@ class Limits:
             At the middle, shape (N,), m; its slopes by rho and h, shape (N, 2); and in which boxes this affine
             function is at most 0 for every shape, shape (N,).
         """
-        link, d12 = self.task.robot.link, self.task.robot.d12
+        link, d12 = self.link, self.task.robot.d12
         r = link.min_bend_radius
         rho, h = boxes.middle[:, 0], boxes.middle[:, 1] - d12
         out = rho - r
@@ -127,30 +138,66 @@ class Limits:
         slopes = np.stack([np.sin(turned), np.cos(turned)], axis=-1)
         return r * turned + straight - link.length.upper, slopes, known
 
-    def allow_direction(self, boxes: Boxes, psi: FloatArray, half: float) -> NDArray[np.bool_]:
+    def allow_direction(self, boxes: Boxes, psi: FloatArray, half: float | FloatArray) -> NDArray[np.bool_]:
         """Whether the link of some shape of each box may end in directions t near given ones.
 
         Args:
             boxes: N boxes.
-            psi: Angles, shape (K,), rad.
-            half: How far psi may be from them, rad.
+            psi: Angles, shape (K,) or (N, K), rad.
+            half: How far psi may be from them, rad; a number or of shape (N, 1).
 
         Returns:
             Shape (N, K); False is a proof.
         """
         _, e1, e2 = boxes.frame
         p = boxes.end - np.array([0.0, 0.0, self.task.robot.d12])
-        chord = np.linalg.norm(p, axis=1)
+        chord = np.linalg.norm(p, axis=1)[:, None]
         cos, sin = np.cos(psi), np.sin(psi)
         along = np.einsum("bi,bi->b", p, e1)[:, None] * cos + np.einsum("bi,bi->b", p, e2)[:, None] * sin
-        across = np.sqrt(np.maximum(chord[:, None] ** 2 - along**2, 0.0))
-        turn = boxes.turn + half
+        across = np.sqrt(np.maximum(chord**2 - along**2, 0.0))
+        moved, turn = boxes.end_radius[:, None], boxes.turn[:, None] + half
         # The link run backwards is a link, too: it starts at p along -t and ends at P2.
-        moved = boxes.end_radius + chord * turn
-        allowed = self.table.upper_bound(across, along) >= -moved[:, None] - SLACK
+        allowed = self.table.upper_bound(across, along) >= -(moved + chord * turn) - SLACK
         # Fenchel: no curve bends by less than the turns from its start to its chord to its end.
-        away = chord > boxes.end_radius + SLACK
-        swing = np.arcsin(np.minimum(boxes.end_radius / np.where(away, chord, 1.0), 1.0))
+        away = chord > moved + SLACK
+        swing = np.arcsin(np.minimum(moved / np.where(away, chord, 1.0), 1.0))
         bend = np.arctan2(np.hypot(p[:, 0], p[:, 1]), p[:, 2])[:, None] + np.arctan2(across, along)
-        least = bend - (2.0 * swing + turn)[:, None]
-        return np.asarray(allowed & (~away[:, None] | (least <= self.most_bend + SLACK)))
+        allowed &= ~away | (bend - 2.0 * swing - turn <= self.most_bend + SLACK)
+        # The last proof only helps in boxes in which the turn at the end hardly changes.
+        box, k = np.nonzero(allowed & (turn < _SMALL_TURN))
+        some_psi = np.broadcast_to(psi, allowed.shape)[box, k][:, None]
+        t = np.cos(some_psi) * e1[box] + np.sin(some_psi) * e2[box]
+        turn = np.broadcast_to(turn, allowed.shape)[box, k]
+        allowed[box, k] = self._spans(p[box], t, moved[box, 0], turn)
+        return np.asarray(allowed)
+
+    def _spans(self, p: FloatArray, t: FloatArray, moved: FloatArray, turn: FloatArray) -> NDArray[np.bool_]:
+        """Whether the link is long enough to turn from z to a direction n, go along it, and turn to t.
+
+        Any direction n gives a proof of NO; here it is about that of the straight part of the shortest way.
+
+        Args:
+            p: The end seen from P2, shape (M, 3), m.
+            t: Its direction, shape (M, 3).
+            moved: How far the end may be from there, shape (M,), m.
+            turn: How far its direction may be from there, shape (M,), rad.
+        """
+        r, longest = self.link.min_bend_radius, self.link.length.upper
+        start = np.array([0.0, 0.0, 1.0])
+        allowed, n = np.ones(len(p), dtype=bool), p
+        for _ in range(_DIRECTIONS):
+            n = n / np.maximum(np.linalg.norm(n, axis=-1, keepdims=True), 1e-12)
+            angles, ahead = [], p
+            for direction in (start, t):
+                cosine = np.clip(np.einsum("...i,...i", direction, n), -1.0, 1.0)
+                sine = np.sqrt(1.0 - cosine**2)
+                angles.append(np.arctan2(sine, cosine))
+                sideways = (direction - cosine[:, None] * n) / np.maximum(sine, 1e-6)[:, None]
+                ahead = ahead - r * (sine[:, None] * n + (1.0 - cosine)[:, None] * sideways)
+            first, last = angles[0], np.maximum(angles[1] - turn, 0.0)
+            straight = longest - r * (first + last)
+            overlap = 2.0 * r * np.sin(np.clip(-0.5 * straight / r, 0.0, 0.5 * math.pi))
+            most = r * (np.sin(first) + np.sin(last)) + np.where(straight >= 0.0, straight, -overlap)
+            allowed &= np.einsum("mi,mi->m", p, n) <= most + moved + SLACK
+            n = ahead
+        return allowed

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,22 +24,8 @@ _PARTS = 4  # into which a cell is cut
 # Boxes in which P5 moves by less than these, m, look at finer cells. Above the first, no affine bound helps.
 _FINER = (0.06, 0.03, 0.006)
 _TINY = 1e-300
+_PARED = 8  # parts of a cell of psi at each end that are looked at one by one
 _ROUNDS = 3  # of cutting a target's cells into two groups
-
-
-@dataclass(frozen=True, eq=False)
-class Evaluated:
-    """What is known of some boxes.
-
-    Attributes:
-        boxes: Those that are left, their psi narrowed to what the limits allow.
-        bounds: Lower bounds of the worst weighted miss in each, shape (N,), m.
-        psi_matters: Whether the limits of joint 2 keep a target from the branch that is nearest, shape (N,).
-    """
-
-    boxes: Boxes
-    bounds: FloatArray
-    psi_matters: NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,70 +54,69 @@ class MissBounds:
 
     Args:
         task: The task; its rigid link is fixed.
-        factors: The tightest tolerance over that of each target, shape (n,).
+        targets: Which of its targets count, shape (n,).
+        factors: The tightest tolerance over that of each of these, shape (n,).
     """
 
-    def __init__(self, task: Task, factors: FloatArray) -> None:
+    def __init__(self, task: Task, targets: NDArray[np.intp], factors: FloatArray) -> None:
         robot = task.robot
         self.limits = Limits.of(task)
         self.floor = -math.inf if task.floor is None else task.floor
         self.factors = factors
-        self.rho, self.z = np.hypot(task.positions[:, 0], task.positions[:, 1]), task.positions[:, 2]
+        x, y, self.z = task.positions[targets].T
+        self.rho = np.hypot(x, y)
         offset, radius = robot.end_effector_circle(robot.rigid_link.d35.lower, robot.rigid_link.d45.lower)
         self.offset, self.radius = float(offset), float(radius)
         self.arm = math.hypot(self.offset, self.radius)
         second = robot.joint_limits.second
         # joint 2 stands at pi where P5 is at phi = psi
-        self.window = max(second.upper - math.pi, math.pi - second.lower)
+        self.window = max(second.upper - math.pi, math.pi - second.lower) + SLACK
         self.cells = (2.0 * np.arange(_CELLS) + 1.0) * math.pi / _CELLS - math.pi
         self.cell_half = math.pi / _CELLS
         self.bits = np.left_shift(np.uint64(1), np.arange(_CELLS, dtype=np.uint64))
         within = np.abs(wrapped(self.cells[:, None] - self.cells)) <= self.window + 2.0 * self.cell_half + SLACK
         self.masks = np.where(within, self.bits, np.uint64(0)).sum(axis=1, dtype=np.uint64)
 
-    def evaluate(self, boxes: Boxes, enough: float) -> Evaluated:
+    def evaluate(self, boxes: Boxes, enough: float) -> Boxes:
         """Bound the worst weighted miss in boxes.
 
         Args:
             boxes: The boxes.
-            enough: Boxes whose bound is at least this, m, are dropped.
+            enough: Boxes in which it is nowhere less than this, m, are dropped.
 
         Returns:
-            The others, with their bounds.
+            The others, with their bounds, and psi narrowed to what the limits allow.
         """
         boxes = boxes.take(self.limits.allow_end(boxes))
-        boxes, alive = self._coarse(boxes, enough)
+        boxes, alive, allowed = self._coarse(boxes, enough)
         size = self.moved(boxes)
-        nothing = np.zeros(len(boxes))
-        parts = [Evaluated(boxes, nothing, nothing > 0.0).__class__(*_none())] if not len(boxes) else []
-        for cuts, (upper, lower) in enumerate(zip((np.inf, *_FINER), (*_FINER, 0.0), strict=True)):
+        parts = [boxes.take(size >= _FINER[0])]
+        for cuts, (upper, lower) in enumerate(itertools.pairwise((*_FINER, 0.0))):
             chosen = (size < upper) & (size >= lower)
-            if not chosen.any():
-                continue
-            few = boxes.take(chosen)
-            if cuts == 0:
-                parts.append(Evaluated(few, nothing[chosen], nothing[chosen] > 0.0))
-            else:
-                parts.append(self._fine(few, alive[chosen], enough, cuts - 1))
-        return Evaluated(
-            Boxes.joined([part.boxes for part in parts]),
-            np.concatenate([part.bounds for part in parts]),
-            np.concatenate([part.psi_matters for part in parts]),
-        )
+            if chosen.any():
+                parts.append(self._fine(boxes.take(chosen), alive[chosen], allowed[chosen], enough, cuts))
+        return Boxes.joined(parts)
 
     def moved(self, boxes: Boxes) -> FloatArray:
         """Return how far any point of the circle of P5 moves in each box from its middle, shape (N,), m."""
         return boxes.end_radius + self.arm * np.minimum(boxes.turn, 2.0)
 
-    def sides(self, boxes: Boxes, psi_matters: NDArray[np.bool_]) -> FloatArray:
+    def sides(self, boxes: Boxes) -> FloatArray:
         """Return how far each parameter alone moves P5, shape (N, 5), m."""
         scale = np.array([1.0, 1.0, self.arm, self.arm, self.radius])
         sides = boxes.half * scale
-        sides[:, 4] = np.where(psi_matters, sides[:, 4], 0.0)
+        sides[:, 4] = np.where(boxes.by_psi, sides[:, 4], 0.0)
         return sides
 
-    def _coarse(self, boxes: Boxes, enough: float) -> tuple[Boxes, NDArray[np.uint64]]:
-        """Return the boxes in which every target may be near, and in which cells, shape (N, n), a bit each."""
+    def _coarse(
+        self, boxes: Boxes, enough: float
+    ) -> tuple[Boxes, NDArray[np.uint64], NDArray[np.bool_]]:
+        """Return the boxes in which every target may be near, where, and at which psi.
+
+        Returns:
+            The boxes; the cells in which each target may be near, shape (N, n), a bit each; and the cells
+            of psi that are left, shape (N, K).
+        """
         u, e1, e2 = boxes.frame
         cos, sin = np.cos(self.cells)[:, None], np.sin(self.cells)[:, None]
         points = (boxes.end + self.offset * u)[:, None] + self.radius * (cos * e1[:, None] + sin * e2[:, None])
@@ -154,13 +140,33 @@ class MissBounds:
         if len(boxes):
             first, last = np.argmax(allowed, axis=1), _CELLS - 1 - np.argmax(allowed[:, ::-1], axis=1)
             psi, psi_half = boxes.middle[:, 4], boxes.half[:, 4]
-            boxes = boxes.with_psi(
-                np.maximum(psi - psi_half, self.cells[first] - self.cell_half),
-                np.minimum(psi + psi_half, self.cells[last] + self.cell_half),
-            )
-        return boxes, alive
+            lower = np.maximum(psi - psi_half, self.cells[first] - self.cell_half)
+            upper = np.minimum(psi + psi_half, self.cells[last] + self.cell_half)
+            lower, upper = self._pared(boxes, lower, upper)
+            open_ = lower <= upper
+            boxes = boxes.with_psi(lower, np.maximum(lower, upper)).take(open_)
+            alive, allowed = alive[open_], allowed[open_]
+        return boxes, alive, allowed
 
-    def _fine(self, boxes: Boxes, alive: NDArray[np.uint64], enough: float, cuts: int) -> Evaluated:
+    def _pared(self, boxes: Boxes, lower: FloatArray, upper: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return psi from `lower` to `upper`, less what the link forbids at both ends."""
+        width = np.minimum(2.0 * self.cell_half, upper - lower) / _PARED
+        steps = np.arange(_PARED)
+        below = lower[:, None] + (steps + 0.5) * width[:, None]
+        above = upper[:, None] - (steps + 0.5) * width[:, None]
+        allowed = self.limits.allow_direction(boxes, np.hstack([below, above]), 0.5 * width[:, None])
+        cut = np.logical_and.accumulate(~allowed[:, :_PARED], axis=1).sum(axis=1)
+        cut_above = np.logical_and.accumulate(~allowed[:, _PARED:], axis=1).sum(axis=1)
+        return lower + cut * width, upper - cut_above * width
+
+    def _fine(
+        self,
+        boxes: Boxes,
+        alive: NDArray[np.uint64],
+        allowed: NDArray[np.bool_],
+        enough: float,
+        cuts: int,
+    ) -> Boxes:
         """Bound the worst weighted miss in small boxes by affine functions."""
         box, target, cell = np.nonzero((alive[:, :, None] & self.bits) != 0)
         candidates = _Candidates(box, target, self.cells[cell], self.cell_half)
@@ -172,9 +178,9 @@ class MissBounds:
         chosen = full[kept.box]
         boxes, kept, forms = boxes.take(full), kept.take(chosen), forms.take(chosen)
         if not len(boxes):
-            return Evaluated(*_none())
+            return boxes
         kept = _Candidates((np.cumsum(full) - 1)[kept.box], kept.target, kept.phi, kept.half)
-        return self._combine(boxes, kept, forms, enough)
+        return self._combine(boxes, kept, forms, allowed[full], enough)
 
     def _near(self, boxes: Boxes, cells: _Candidates, enough: float) -> tuple[_Forms, _Candidates]:
         """Return the affine bounds of each cell, those aside that show it to be far from its target."""
@@ -249,8 +255,10 @@ class MissBounds:
             point[:, 2] + moved,
         )
 
-    def _combine(self, boxes: Boxes, cells: _Candidates, forms: _Forms, enough: float) -> Evaluated:
-        """Return the best bound of each box from the affine bounds of all its cells."""
+    def _combine(
+        self, boxes: Boxes, cells: _Candidates, forms: _Forms, allowed: NDArray[np.bool_], enough: float
+    ) -> Boxes:
+        """Return the boxes that are left, with the best bound from the affine bounds of all their cells."""
         count, n = len(boxes), len(self.z)
         key = cells.box * n + cells.target
         starts = np.flatnonzero(np.concatenate([[True], key[1:] != key[:-1]]))
@@ -270,10 +278,9 @@ class MissBounds:
         bounds = np.maximum(self._programs(boxes, values, slopes, enough), single.max(axis=1))
 
         around = np.abs(wrapped(cells.phi[nearest].reshape(count, n, 1) - self.cells)).max(axis=1)
-        open_ = np.abs(self.cells - boxes.middle[:, 4, None]) <= boxes.half[:, 4, None] + self.cell_half
-        kept = bounds < enough
-        matters = ~((around <= self.window) & open_).any(axis=1)
-        return Evaluated(boxes.take(kept), bounds[kept], matters[kept])
+        by_psi = ~((around <= self.window) & allowed).any(axis=1)
+        boxes = replace(boxes, bound=np.maximum(boxes.bound, bounds), by_psi=by_psi)
+        return boxes.take(bounds < enough)
 
     def _merged(
         self,
@@ -415,7 +422,3 @@ def wrapped(angle: FloatArray) -> FloatArray:
     """Return angles moved by whole turns into [-pi, pi], rad."""
     return angle - 2.0 * math.pi * np.rint(angle / (2.0 * math.pi))
 
-
-def _none() -> tuple[Boxes, FloatArray, NDArray[np.bool_]]:
-    empty = Boxes(np.empty(0, dtype=np.intp), np.empty((0, 5)), np.empty((0, 5)))
-    return empty, np.empty(0), np.empty(0, dtype=bool)
