@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import threading
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ from synth.errors import SolverError
 from synth.geometry import Invariants
 from synth.synthesis.bound import Bound, prove
 from synth.synthesis.exact_starts import nearest_to_designs
-from synth.synthesis.nlp import SynthesisNlp
+from synth.synthesis.nlp import Structure, shared_nlp
 from synth.synthesis.population import ARCS, Population
 from synth.synthesis.refinement import refine
 from synth.synthesis.screening import limited_misses
@@ -38,7 +39,8 @@ class Certifier:
     """Finds the shape of the least worst miss, and proves how much better none can be.
 
     Attributes:
-        task: The task.
+        task: The task, or a part of its targets.
+        tightest: The tightest tolerance of the whole task, m.
         designs: The shapes found so far, all of which the hardware can take.
         keep: Checks a shape and puts it to the designs if it is possible.
         stop: Whether to end with what there is.
@@ -47,29 +49,30 @@ class Certifier:
     """
 
     task: Task
+    tightest: float
     designs: list[Design]
     keep: Callable[[Arm, FloatArray], Design]
     stop: Callable[[], bool]
     progress: Callable[[float, float], None]
     rng: np.random.Generator
-    _nlp: SynthesisNlp = field(init=False)
+    _minimax: Task = field(init=False)
     _links: Population = field(init=False)
 
     def __post_init__(self) -> None:
-        equal = tuple(replace(target, weight=1.0) for target in self.task.targets)
-        worst = replace(self.task, objective=Objective.MINIMAX, targets=equal)
-        self._nlp = SynthesisNlp(worst, ARCS, self.stop)
+        table = self.task.table
+        equal = replace(table, weights=np.ones(len(table)))
+        self._minimax = replace(self.task, objective=Objective.MINIMAX, targets=equal)
         self._links = Population.sample(self.task.robot, _LINKS, self.rng)
 
     def certificate(self) -> Bound | None:
         """Return the bound; None where there is no proof for such a task."""
         for design in sorted(self.designs, key=self._worst)[:_POLISHED]:
             self._polish(design.arm, design.verification.joints)
-        misses = self._best_misses()
         return prove(
             self.task,
             self._best(),
-            misses,
+            self._best_misses(),
+            tightest=self.tightest,
             stop=self.stop,
             improve=self._improve,
             progress=lambda lower: self.progress(self._best(), lower),
@@ -78,7 +81,7 @@ class Certifier:
     def _worst(self, design: Design) -> float:
         """Return the worst weighted miss of a design, m."""
         tolerances = self.task.tolerances
-        return float(np.max(design.verification.misses * (tolerances.min() / tolerances)))
+        return float(np.max(design.verification.misses * (self.tightest / tolerances)))
 
     def _best(self) -> float:
         return min(map(self._worst, self.designs), default=math.inf)
@@ -90,7 +93,8 @@ class Certifier:
 
     def _polish(self, arm: Arm, joints: FloatArray) -> None:
         try:
-            answer = self._nlp.solve(arm, joints)
+            program = shared_nlp(Structure.of(self._minimax), ARCS, False, threading.get_ident())
+            answer = program.solve(self._minimax, arm, joints, self.stop)
         except SolverError:
             return  # other starts may do
         self.keep(answer.arm, answer.joints)

@@ -30,8 +30,8 @@ class Boxes:
     """Boxes of the parameters (rho, h, alpha, beta, psi) of the link's end.
 
     After a turn about axis 1 the link ends at p = (rho, 0, h), rho >= 0. With the three axes e_m, e_a, e_b
-    of a chart, w = cos(beta) e_m + sin(beta) e_b, u = cos(alpha) w + sin(alpha) e_a is the direction of axis 2,
-    and with e1 = du/dalpha and e2 = u x e1 the link ends in the direction t = cos(psi) e1 + sin(psi) e2.
+    of a chart, w = cos(beta) e_m + sin(beta) e_b and u = cos(alpha) w + sin(alpha) e_a, the direction of
+    axis 2. With e1 = du/dalpha and e2 = u x e1 the link ends in the direction t = cos(psi) e1 + sin(psi) e2.
 
     Attributes:
         chart: Number of the chart, shape (N,).
@@ -49,7 +49,7 @@ class Boxes:
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            value = getattr(self, field.name)
+            value = getattr(self, field.name).view()
             object.__setattr__(self, field.name, value)
             value.flags.writeable = False
 

@@ -121,8 +121,8 @@ class Limits:
             boxes: N boxes.
 
         Returns:
-            At the middle, shape (N,), m; its slopes by rho and h, shape (N, 2); and in which boxes this affine
-            function is at most 0 for every shape, shape (N,).
+            At the middle, shape (N,), m; its slopes by rho and h, shape (N, 2); and in which boxes this
+            affine function is at most 0 for every shape, shape (N,).
         """
         link, d12 = self.link, self.task.robot.d12
         r = link.min_bend_radius

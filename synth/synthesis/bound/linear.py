@@ -104,7 +104,10 @@ def combined(
     """Return the affine function that multipliers make, and its least value over the box.
 
     Args:
-        values, slopes, cuts, cut_slopes: As for `multipliers`.
+        values: As for `multipliers`, as are the next three.
+        slopes: By v, shape (N, n, d).
+        cuts: Shape (N, m).
+        cut_slopes: By v, shape (N, m, d).
         of_functions: Multipliers of the functions, shape (N, n), at least 0, of sum 1.
         of_cuts: Multipliers of the cuts, shape (N, m), at least 0.
 

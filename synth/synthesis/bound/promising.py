@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.geometry import SweptCircle
-from synth.synthesis.bound.misses import MissBounds, wrapped
+from synth.synthesis.bound.cells import wrapped
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.synthesis.bound.boxes import Boxes
+    from synth.synthesis.bound.misses import MissBounds
 
 _LOOKED_AT = 32  # boxes of a batch
 _SMALL = 0.01  # m: P5 moves by less in boxes that are looked at
@@ -38,11 +39,11 @@ class Promising:
         """Return the circle of P5 of the best middle, if it is better than a miss, m, and new."""
         if len(self.tried) >= _TRIES or not len(boxes):
             return None
-        small = np.flatnonzero((self.bounds.moved(boxes) < _SMALL) & (boxes.bound < better_than))
+        small = np.flatnonzero((self.bounds.circle.moved(boxes) < _SMALL) & (boxes.bound < better_than))
         if not len(small):
             return None
         few = boxes.take(small[np.argsort(boxes.bound[small], kind="stable")[:_LOOKED_AT]])
-        rows = np.hstack([few.end, self.bounds.arm * few.frame[0]])
+        rows = np.hstack([few.end, self.bounds.circle.arm * few.frame[0]])
         apart = np.linalg.norm(rows[:, None] - self.tried, axis=-1).min(axis=1, initial=np.inf)
         misses = np.where(apart > _APART, self._misses(few), np.inf)
         best = int(np.argmin(misses))
@@ -50,16 +51,16 @@ class Promising:
             return None
         self.tried = np.vstack([self.tried, rows[best]])
         axis = few.frame[0][best]
-        return SweptCircle(few.end[best] + self.bounds.offset * axis, axis, self.bounds.radius)
+        return SweptCircle(few.end[best] + self.bounds.circle.offset * axis, axis, self.bounds.circle.radius)
 
     def _misses(self, boxes: Boxes) -> FloatArray:
         """Return about the worst weighted miss of the middles of boxes at the best psi, shape (N,), m."""
         bounds = self.bounds
         u, e1, e2 = (direction[:, None] for direction in boxes.frame)
         cos, sin = np.cos(_ANGLES)[:, None], np.sin(_ANGLES)[:, None]
-        points = boxes.end[:, None] + bounds.offset * u + bounds.radius * (cos * e1 + sin * e2)
+        points = boxes.end[:, None] + bounds.circle.offset * u + bounds.circle.radius * (cos * e1 + sin * e2)
         rho, z = np.hypot(points[..., 0], points[..., 1])[..., None], points[..., 2, None]
-        off = np.hypot(rho - bounds.rho, z - bounds.z) * bounds.factors
+        off = np.hypot(rho - bounds.circle.rho, z - bounds.circle.z) * bounds.factors
         off[points[..., 2] < bounds.floor] = np.inf
         worst = np.full(len(boxes), np.inf)
         for part in _PSI:

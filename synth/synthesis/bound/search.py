@@ -16,6 +16,8 @@ from synth.synthesis.impossibility import longest_rigid_link
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from numpy.typing import NDArray
+
     from synth.arrays import FloatArray
     from synth.geometry import SweptCircle
     from synth.task import Task
@@ -73,6 +75,7 @@ def prove(
     best_found: float,
     misses: FloatArray,
     *,
+    tightest: float,
     gap: float = 1e-4,
     stop: Callable[[], bool],
     improve: Callable[[SweptCircle], float] | None = None,
@@ -87,6 +90,7 @@ def prove(
         task: The task.
         best_found: The least worst weighted miss that is known to be possible, m.
         misses: The misses of that shape, shape (n,), m: they tell which targets are hard.
+        tightest: The tightest tolerance: a miss counts by it over its target's tolerance, m.
         gap: The proof ends when the bound is as near as this to `best_found`, m.
         stop: Asked many times a second; when it says yes, the bound so far is returned.
         improve: Looks for a shape with about the workspace of a circle that promises less than the best
@@ -98,8 +102,7 @@ def prove(
     """
     if not task.robot.rigid_link.is_fixed:
         return None
-    factors = task.tolerances.min() / task.tolerances
-    tightest = float(task.tolerances.min())
+    factors = tightest / task.tolerances
     size = task.robot.link.length.upper + longest_rigid_link(task.robot) + float(np.abs(task.positions).max())
     rounding = _ROUNDING * size
     wanted = gap - rounding
@@ -126,8 +129,8 @@ def prove(
         left = bounds.evaluate(halves, enough)
         boxes = Boxes.joined([boxes.take(~first), left])
         count += len(halves)
-        circle = None if improve is None else promising.circle(left, enough)
-        if circle is not None:
+        circle = promising.circle(left, enough) if improve is not None else None
+        if circle is not None and improve is not None:
             best_found = min(best_found, improve(circle))
             enough = min(enough, best_found - wanted)
             boxes = boxes.take(boxes.bound < enough)
@@ -137,7 +140,7 @@ def prove(
     return Bound(max(lower - rounding, 0.0), best_found, tightest, count)
 
 
-def _hardest(positions: FloatArray, misses: FloatArray) -> FloatArray:
+def _hardest(positions: FloatArray, misses: FloatArray) -> NDArray[np.intp]:
     """Return which targets to look at: half of them by their misses, the others far apart."""
     if len(misses) <= _TARGETS:
         return np.arange(len(misses))
