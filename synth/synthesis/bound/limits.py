@@ -185,6 +185,8 @@ class Limits:
         r, longest = self.link.min_bend_radius, self.link.length.upper
         start = np.array([0.0, 0.0, 1.0])
         allowed, n = np.ones(len(p), dtype=bool), p
+        if longest < math.pi * r:
+            return allowed
         for _ in range(_DIRECTIONS):
             n = n / np.maximum(np.linalg.norm(n, axis=-1, keepdims=True), 1e-12)
             angles, ahead = [], p

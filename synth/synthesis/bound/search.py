@@ -116,7 +116,7 @@ def prove(
     link, d12 = bounds.limits.link, task.robot.d12
     lowest = d12 - link.length.upper
     if task.floor is not None:
-        lowest = max(lowest, task.floor - max(abs(task.robot.tip_offset), task.robot.d34))
+        lowest = max(lowest, task.floor - abs(task.robot.tip_offset) - task.robot.d34)
     boxes = Boxes.cover(link.length.upper, (min(lowest, d12), d12 + link.length.upper))
     promising = Promising(bounds)
     count, lower = 0, 0.0
