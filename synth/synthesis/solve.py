@@ -219,7 +219,7 @@ class _Search:
             self._keep,
             lambda: self.stop() or self.clock.is_up() or time.perf_counter() > until,
             lambda worst, lower: self.progress(
-                Progress(self.starts, self._starts_at_most, worst, self._found(), lower)
+                Progress(self.starts, self.starts_at_most, worst, self._found(), lower)
             ),
             np.random.default_rng(self.seed),
         )
