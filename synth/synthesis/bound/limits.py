@@ -185,7 +185,7 @@ class Limits:
         r, longest = self.link.min_bend_radius, self.link.length.upper
         start = np.array([0.0, 0.0, 1.0])
         allowed, n = np.ones(len(p), dtype=bool), p
-        if longest < math.pi * r:
+        if self.most_bend < math.pi:
             return allowed
         for _ in range(_DIRECTIONS):
             n = n / np.maximum(np.linalg.norm(n, axis=-1, keepdims=True), 1e-12)
@@ -197,9 +197,9 @@ class Limits:
                 sideways = (direction - cosine[:, None] * n) / np.maximum(sine, 1e-6)[:, None]
                 ahead = ahead - r * (sine[:, None] * n + (1.0 - cosine)[:, None] * sideways)
             first, last = angles[0], np.maximum(angles[1] - turn, 0.0)
-            straight = longest - r * (first + last)
-            overlap = 2.0 * r * np.sin(np.clip(-0.5 * straight / r, 0.0, 0.5 * math.pi))
-            most = r * (np.sin(first) + np.sin(last)) + np.where(straight >= 0.0, straight, -overlap)
+            beside = np.maximum(0.5 * (first + last - self.most_bend), 0.0)
+            straight = longest - r * (first + last - 2.0 * beside)
+            most = r * (np.sin(first) + np.sin(last) - 2.0 * np.sin(beside)) + straight * np.cos(beside)
             allowed &= np.einsum("mi,mi->m", p, n) <= most + moved + SLACK
             n = ahead
         return allowed
