@@ -138,7 +138,7 @@ def test_the_fields_of_the_contract_are_there():
     content = read_back(SOLUTION)
     assert content["schema"] == "synth.solution/1"
     assert list(content["distances"]) == list(content["squared_distances"]) == PAIRS
-    assert set(content["time"]) == {"total", "screening", "solving", "verifying"}
+    assert set(content["time"]) == {"total", "screening", "solving", "verifying", "proving"}
     assert (content["seed"], content["starts"], content["task"]) == (7, 3, "crates")
     assert content["category"] in {"general", "puma", "scara", "spherical"}
     assert set(content["category_distances"]) == {"puma", "scara", "spherical"}

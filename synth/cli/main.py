@@ -37,12 +37,20 @@ def main() -> None:
 @click.option("--json", "as_json", is_flag=True, help="Print the solution as JSON and nothing else.")
 @click.option("--all", "show_all", is_flag=True, help="Show the alternative shapes, too.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the search.")
+@click.option("--prove", is_flag=True, help="Prove how much better than the best shape found any may be.")
 @click.option(
     "--time-limit", metavar="S", type=click.FloatRange(min=0.0, min_open=True), default=math.inf,
     help="Stop after this many seconds and give the best shape so far.  [default: none]",
 )  # fmt: skip
 def solve(
-    task_file: Path, output: Path | None, *, as_json: bool, show_all: bool, seed: int, time_limit: float
+    task_file: Path,
+    output: Path | None,
+    *,
+    as_json: bool,
+    show_all: bool,
+    seed: int,
+    prove: bool,
+    time_limit: float,
 ) -> None:
     """Find a shape of the link for the targets in TASK.yaml.
 
@@ -51,7 +59,11 @@ def solve(
     from synth.cli.solve import solve_file
 
     form = "json" if as_json else "text"
-    sys.exit(solve_file(task_file, output, form=form, show_all=show_all, seed=seed, time_limit=time_limit))
+    sys.exit(
+        solve_file(
+            task_file, output, form=form, show_all=show_all, seed=seed, prove=prove, time_limit=time_limit
+        )
+    )
 
 
 @main.command()

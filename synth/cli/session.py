@@ -56,6 +56,8 @@ def search_progress() -> Iterator[Callable[[Progress], None] | None]:
 
         def show(progress: Progress) -> None:
             best = f"best shape misses by {1e3 * progress.worst_miss:.3f} mm at most"
+            if progress.lower_bound is not None:
+                best += f", every shape by {1e3 * progress.lower_bound:.3f} mm"
             bar.update(task, total=progress.starts_at_most, completed=progress.starts, description=best)
 
         yield show

@@ -20,7 +20,14 @@ if TYPE_CHECKING:
 
 
 def solve_file(
-    file: Path, output: Path | None, *, form: str, show_all: bool, seed: int, time_limit: float
+    file: Path,
+    output: Path | None,
+    *,
+    form: str,
+    show_all: bool,
+    seed: int,
+    prove: bool,
+    time_limit: float,
 ) -> ExitCode:
     """Solve the task of a file and say what was found.
 
@@ -30,6 +37,7 @@ def solve_file(
         form: "text" or "json".
         show_all: Whether the text shows the alternative shapes.
         seed: Seed of the search.
+        prove: Whether to prove how much better any shape may be.
         time_limit: Time after which the best shape so far is given, s.
 
     Returns:
@@ -40,7 +48,9 @@ def solve_file(
         if output is not None:
             prepare_directory(output)
         with interruptible() as stop, search_progress() as progress:
-            solution = solve(task, seed=seed, time_limit=time_limit, stop=stop, progress=progress)
+            solution = solve(
+                task, seed=seed, prove=prove, time_limit=time_limit, stop=stop, progress=progress
+            )
         if form == "json":
             click.echo(json.dumps(solution_to_json(solution), indent=2, allow_nan=False))
         else:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from synth.export.plain import plain
 from synth.guide import MARKERS, make_guide
-from synth.synthesis import MOST_MOTIONS, motions
+from synth.synthesis import MOST_MOTIONS, Bound, motions
 from synth.synthesis.solution import target_results
 from synth.version import __version__
 
@@ -49,7 +49,7 @@ def solution_to_json(solution: Solution) -> dict[str, Any]:
         **shape,
         "targets": _targets(task, designs[0]) if designs else _targets_missed(task),
         "motions": list(motions(task, designs[0])) if _has_motions(solution) else None,
-        "bound": None,
+        "bound": _bound(solution.bound),
         "alternatives": [_alternative(task, design) for design in designs[1:]],
     }
     return plain(content)
@@ -71,6 +71,10 @@ _SHAPE_FIELDS = (
     "link",
     "guide",
 )
+
+
+def _bound(bound: Bound | None) -> dict[str, object] | None:
+    return None if bound is None else {"lower_bound": bound.lower_bound, "gap": bound.gap}
 
 
 def _shape(task: Task, design: Design) -> dict[str, object]:

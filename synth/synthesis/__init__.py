@@ -1,5 +1,6 @@
 """The synthesis: screen, polish, verify; `solve` is its one verb."""
 
+from synth.synthesis.bound import Bound
 from synth.synthesis.motion import MOST_MOTIONS, Motion, motions
 from synth.synthesis.release import Release, releases
 from synth.synthesis.solution import Design, NotFoundError, Solution, Status, TargetResult, Timing
@@ -8,6 +9,7 @@ from synth.synthesis.verification import Verification, Violation, verify
 
 __all__ = [
     "MOST_MOTIONS",
+    "Bound",
     "Design",
     "Motion",
     "NotFoundError",

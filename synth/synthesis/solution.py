@@ -14,6 +14,7 @@ from synth.synthesis.verification import clear_of_everything
 
 if TYPE_CHECKING:
     from synth.robot import Arm
+    from synth.synthesis.bound import Bound
     from synth.synthesis.verification import Verification
     from synth.task import Task
 
@@ -86,12 +87,14 @@ class Timing:
         screening: Finding start points.
         solving: Building and running the nonlinear program.
         verifying: Checking what it found.
+        proving: Bounding what any shape can do.
     """
 
     total: float
     screening: float
     solving: float
     verifying: float
+    proving: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -107,6 +110,8 @@ class Solution:
         designs: Distinct shapes, the best first; only shapes that the hardware can take.
         starts: How many start points were polished.
         time: Where the time went.
+        bound: How much better than the best shape found any shape may be; None if that was not asked, or
+            there is no proof for such a task.
     """
 
     task: Task
@@ -117,6 +122,7 @@ class Solution:
     designs: tuple[Design, ...]
     starts: int
     time: Timing
+    bound: Bound | None = None
 
     @property
     def found(self) -> bool:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.errors import SolverError
+from synth.synthesis.certificate import Certifier
 from synth.synthesis.exact_starts import exact_designs
 from synth.synthesis.impossibility import why_impossible
 from synth.synthesis.many_targets import improved, levelled, part_of
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.robot import Arm
+    from synth.synthesis.bound import Bound
     from synth.synthesis.separation import Separation
     from synth.task import Task
 
@@ -37,6 +39,7 @@ _STARTS_WHEN_IMPOSSIBLE = 12  # for a good best effort
 _FOLLOWED = 2  # shapes of a neighbour that are polished
 _STARTS_AFTER_FOUND = 6  # for distinct, gentler and nearer alternatives
 _ALTERNATIVES = 8
+_PROOF_TIME = 60.0  # s
 # Shapes whose objective is above this multiple of the best one's are no alternatives to it.
 _COMPARABLE = 1.5
 # A shape that uses less than this part of every tolerance meets the targets exactly: what it misses is
@@ -56,12 +59,16 @@ _CLASHES = ("obstacle", "itself")
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a search is: start points polished, of at most how many, and the best worst miss, m."""
+    """How far a search is: start points polished, of at most how many, and the best worst miss, m.
+
+    While a proof runs, `lower_bound` is the bound so far, m.
+    """
 
     starts: int
     starts_at_most: int
     worst_miss: float
     found: bool
+    lower_bound: float | None = None
 
 
 def solve(
@@ -69,6 +76,7 @@ def solve(
     *,
     seed: int = 0,
     warm_start: Solution | None = None,
+    prove: bool = False,
     time_limit: float = math.inf,
     stop: Callable[[], bool] | None = None,
     progress: Callable[[Progress], None] | None = None,
@@ -81,9 +89,10 @@ def solve(
         warm_start: The solution of a task nearby, of the same robot: targets a few millimetres or
             centimetres away. If one of its two best shapes, polished for this task, reaches every target
             it is returned, with no other shapes beside it. If not, the whole search follows.
+        prove: Whether to bound how little any shape can miss; that takes seconds, a minute at most.
         time_limit: Time after which the best shape so far is returned, s.
         stop: Asked many times a second; when it says yes, the best shape so far is returned.
-        progress: Told after each start point.
+        progress: Told after each start point, and of each step of the proof.
 
     Returns:
         The solution, whatever was found; its status says what it is worth.
@@ -93,6 +102,8 @@ def solve(
     near = warm_start.designs if warm_start is not None and warm_start.task.robot == task.robot else ()
     if not search.follow(near):
         search.run()
+    if prove:
+        search.prove()
     return search.solution()
 
 
@@ -127,7 +138,7 @@ class _Clock:
     def __init__(self, time_limit: float) -> None:
         self._began = time.perf_counter()
         self._time_limit = time_limit
-        self._spent = {"screening": 0.0, "solving": 0.0, "verifying": 0.0}
+        self._spent = {"screening": 0.0, "solving": 0.0, "verifying": 0.0, "proving": 0.0}
 
     @contextmanager
     def on(self, part: str) -> Iterator[None]:
@@ -162,6 +173,7 @@ class _Search:
     starts_at_most: int = 0
     starts_found: int = 0  # since a shape was found, that start included
     interrupted: bool = False
+    bound: Bound | None = None
 
     @cached_property
     def _impossible(self) -> tuple[str, ...]:
@@ -195,6 +207,33 @@ class _Search:
             if self.starts >= self.starts_at_most or self.starts_found > _STARTS_AFTER_FOUND:
                 return
 
+    def prove(self) -> None:
+        """Bound how little any shape can miss, unless the search was stopped already."""
+        if self.interrupted:
+            return
+        until = time.perf_counter() + _PROOF_TIME
+        certifier = Certifier(
+            self.part,
+            float(self.task.tolerances.min()),
+            self.designs,
+            self._keep,
+            lambda: self.stop() or self.clock.is_up() or time.perf_counter() > until,
+            lambda worst, lower: self.progress(
+                Progress(self.starts, self.starts_at_most, worst, self._found(), lower)
+            ),
+            np.random.default_rng(self.seed),
+        )
+        with self.clock.on("proving"):
+            self.bound = certifier.certificate()
+
+    def _bound_for(self, designs: tuple[Design, ...]) -> Bound | None:
+        """Return the bound with what was found for all targets: that of a part holds for all of them."""
+        if self.bound is None or self.part is self.task:
+            return self.bound
+        relative = [float(np.max(d.verification.misses / self.task.tolerances)) for d in designs]
+        best = self.bound.tightest_tolerance * min(relative, default=math.inf)
+        return replace(self.bound, best_found=best)
+
     def solution(self) -> Solution:
         """Rank what was found and say what it is worth."""
         designs = self._for_all_targets(_best_of(self.part, self.designs))
@@ -202,7 +241,15 @@ class _Search:
         misses = _what_misses(self.task, designs[0]) if designs else []
         message = ": ".join(filter(None, [status.sentence, "; ".join([*misses, *reasons])]))
         return Solution(
-            self.task, status, message, reasons, self.seed, designs, self.starts, self.clock.timing()
+            self.task,
+            status,
+            message,
+            reasons,
+            self.seed,
+            designs,
+            self.starts,
+            self.clock.timing(),
+            self._bound_for(designs),
         )
 
     @property
@@ -224,6 +271,8 @@ class _Search:
             return Status.FOUND, ()
         if self._impossible:
             return Status.PROVEN_IMPOSSIBLE, self._impossible
+        if self.bound is not None and self.bound.excludes:
+            return Status.PROVEN_IMPOSSIBLE, (self.bound.sentence,)
         if self.breakdowns and not (self.designs or self.blocked):
             return Status.FAILED, tuple(self.breakdowns[:1])
         status = Status.LIMIT if self.interrupted else Status.BEST_EFFORT

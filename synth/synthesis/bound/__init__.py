@@ -1,0 +1,5 @@
+"""Lower bounds of the worst miss over all shapes, by branch and bound: `prove` is the one verb."""
+
+from synth.synthesis.bound.search import Bound, prove
+
+__all__ = ["Bound", "prove"]

@@ -1,0 +1,152 @@
+"""Branch and bound over all shapes: a certificate of how little any of them can miss."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.synthesis.bound.boxes import Boxes
+from synth.synthesis.bound.misses import MissBounds
+from synth.synthesis.bound.promising import Promising
+from synth.synthesis.impossibility import longest_rigid_link
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from synth.arrays import FloatArray
+    from synth.geometry import SweptCircle
+    from synth.task import Task
+
+# Taken off every bound, m for each metre of the robot's size: see "Rounding" in docs/bound.md.
+_ROUNDING = 1e-9
+_BATCH = 2048
+_BOXES_AT_MOST = 2_000_000  # open at a time, some 200 bytes each
+# Bounds from this many of the targets hold for all of them.
+_TARGETS = 12
+
+
+@dataclass(frozen=True)
+class Bound:
+    """What is proven of the worst miss over all shapes that the hardware allows.
+
+    With w the tightest tolerance over that of each target (1 for all if they are equal), the worst weighted
+    miss of a shape is the largest w * miss over the targets. No shape has a smaller one than `lower_bound`.
+
+    Attributes:
+        lower_bound: Lower bound of the worst weighted miss, m.
+        best_found: The least worst weighted miss of all shapes that were found, m; infinite if none was.
+        tightest_tolerance: The tightest tolerance of the targets, m.
+        boxes: How many boxes of shapes were looked at.
+    """
+
+    lower_bound: float
+    best_found: float
+    tightest_tolerance: float
+    boxes: int
+
+    @property
+    def gap(self) -> float:
+        """By how much the best shape found may be worse than the best there is, m."""
+        return self.best_found - self.lower_bound
+
+    @property
+    def excludes(self) -> bool:
+        """Whether it proves that no shape has all targets within their tolerances."""
+        return self.lower_bound > self.tightest_tolerance
+
+    @property
+    def sentence(self) -> str:
+        """The same for the user."""
+        lower, gap = 1e3 * self.lower_bound, 1e3 * self.gap
+        # Rounded down, so that the sentence is true, too.
+        return (
+            f"proven: every shape misses some target by at least {math.floor(1e3 * lower) / 1e3:.3f} mm; "
+            f"the best found is within {math.ceil(1e3 * gap) / 1e3:.3f} mm of the best there is"
+        )
+
+
+def prove(
+    task: Task,
+    best_found: float,
+    misses: FloatArray,
+    *,
+    tightest: float,
+    gap: float = 1e-4,
+    stop: Callable[[], bool],
+    improve: Callable[[SweptCircle], float] | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Bound | None:
+    """Bound the worst weighted miss over all shapes that the hardware allows from below.
+
+    The bound leaves out what it cannot use: obstacles, the arm itself, the category asked for, the limits
+    of joint 1. So it holds with them, too.
+
+    Args:
+        task: The task.
+        best_found: The least worst weighted miss that is known to be possible, m.
+        misses: The misses of that shape, shape (n,), m: they tell which targets are hard.
+        tightest: The tightest tolerance: a miss counts by it over its target's tolerance, m.
+        gap: The proof ends when the bound is as near as this to `best_found`, m.
+        stop: Asked many times a second; when it says yes, the bound so far is returned.
+        improve: Looks for a shape with about the workspace of a circle that promises less than the best
+            found, and returns the worst weighted miss of the best shape now, m.
+        progress: Told the bound so far, m.
+
+    Returns:
+        The bound; None if the rigid link is not fixed.
+    """
+    if not task.robot.rigid_link.is_fixed:
+        return None
+    factors = tightest / task.tolerances
+    size = task.robot.link.length.upper + longest_rigid_link(task.robot) + float(np.abs(task.positions).max())
+    rounding = _ROUNDING * size
+    wanted = gap - rounding
+    enough = best_found - wanted
+    if not enough > 0.0:
+        return Bound(0.0, best_found, tightest, 0)
+    if math.isinf(enough):  # nothing was found: then to know that it is impossible is all
+        enough = 1.1 * tightest + gap
+    chosen = _hardest(task.positions, factors * misses)
+    bounds = MissBounds(task, chosen, factors[chosen])
+    link, d12 = bounds.limits.link, task.robot.d12
+    lowest = d12 - link.length.upper
+    if task.floor is not None:
+        lowest = max(lowest, task.floor - abs(task.robot.tip_offset) - task.robot.d34)
+    boxes = Boxes.cover(link.length.upper, (min(lowest, d12), d12 + link.length.upper))
+    promising = Promising(bounds)
+    count, lower = 0, 0.0
+    while len(boxes) and len(boxes) < _BOXES_AT_MOST and not stop():
+        batch = min(_BATCH, len(boxes))
+        first = np.zeros(len(boxes), dtype=bool)
+        first[np.argpartition(boxes.bound, batch - 1)[:batch]] = True
+        halves = boxes.take(first)
+        halves = halves.halved(np.argmax(bounds.sides(halves), axis=1))
+        left = bounds.evaluate(halves, enough)
+        boxes = Boxes.joined([boxes.take(~first), left])
+        count += len(halves)
+        circle = promising.circle(left, enough) if improve is not None else None
+        if circle is not None and improve is not None:
+            best_found = min(best_found, improve(circle))
+            enough = min(enough, best_found - wanted)
+            boxes = boxes.take(boxes.bound < enough)
+        lower = min(float(boxes.bound.min(initial=enough)), enough)
+        if progress is not None:
+            progress(lower)
+    return Bound(max(lower - rounding, 0.0), best_found, tightest, count)
+
+
+def _hardest(positions: FloatArray, misses: FloatArray) -> NDArray[np.intp]:
+    """Return which targets to look at: half of them by their misses, the others far apart."""
+    if len(misses) <= _TARGETS:
+        return np.arange(len(misses))
+    chosen = list(np.argsort(-misses, kind="stable")[: _TARGETS // 2])
+    apart = np.linalg.norm(positions[:, None] - positions[chosen], axis=-1).min(axis=1)
+    while len(chosen) < _TARGETS:
+        chosen.append(int(np.argmax(apart)))
+        apart = np.minimum(apart, np.linalg.norm(positions - positions[chosen[-1]], axis=-1))
+    return np.array(chosen)
