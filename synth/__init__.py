@@ -32,7 +32,7 @@ if TYPE_CHECKING:
         links_to_poses,
         why_no_link,
     )
-    from synth.synthesis import NotFoundError, Solution, Status, solve, verify
+    from synth.synthesis import NotFoundError, Solution, Status, explain, solve, verify
     from synth.task import Objective, Obstacle, PointTarget, Task, Topology, load_robot, load_task, parse_task
 
 _ROOMS = {
@@ -51,13 +51,14 @@ _ROOMS = {
         "links_to_poses",
         "why_no_link",
     ),
-    "synthesis": ("NotFoundError", "Solution", "Status", "solve", "verify"),
+    "synthesis": ("NotFoundError", "Solution", "Status", "explain", "solve", "verify"),
     "task": (
         "Objective",
         "Obstacle",
         "PointTarget",
         "Task",
         "Topology",
+        "explain",
         "load_robot",
         "load_task",
         "parse_task",
@@ -89,6 +90,7 @@ __all__ = [
     "Topology",
     "Workspace",
     "__version__",
+    "explain",
     "link_to_pose",
     "links_to_poses",
     "load_robot",

@@ -81,10 +81,13 @@ def joint_1_too_short(rng: np.random.Generator) -> Task:
 
 
 def joint_2_too_short(rng: np.random.Generator) -> Task:
-    """One target needs joint 2 to turn 4 deg farther than it can."""
+    """The targets need a range of joint 2 that is 6 deg wider than it is.
+
+    Where the range lies does not matter: the link may end in any direction across axis 2.
+    """
     arm = planted_arm(rng)
     joints = _joints(rng, arm, 8)
-    second = Interval(joints[:, 1].min() + np.radians(4), joints[:, 1].max() + np.radians(4))
+    second = Interval(joints[:, 1].min() + np.radians(3), joints[:, 1].max() - np.radians(3))
     limits = replace(ROBOT.joint_limits, second=second)
     return replace(_task(arm, joints), robot=replace(ROBOT, joint_limits=limits))
 

@@ -39,6 +39,10 @@ def main() -> None:
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the search.")
 @click.option("--prove", is_flag=True, help="Prove how much better than the best shape found any may be.")
 @click.option(
+    "--why", is_flag=True,
+    help="If a target is missed, say which limit blocks the task and what would release it.",
+)  # fmt: skip
+@click.option(
     "--time-limit", metavar="S", type=click.FloatRange(min=0.0, min_open=True), default=math.inf,
     help="Stop after this many seconds and give the best shape so far.  [default: none]",
 )  # fmt: skip
@@ -50,6 +54,7 @@ def solve(
     show_all: bool,
     seed: int,
     prove: bool,
+    why: bool,
     time_limit: float,
 ) -> None:
     """Find a shape of the link for the targets in TASK.yaml.
@@ -59,11 +64,11 @@ def solve(
     from synth.cli.solve import solve_file
 
     form = "json" if as_json else "text"
-    sys.exit(
-        solve_file(
-            task_file, output, form=form, show_all=show_all, seed=seed, prove=prove, time_limit=time_limit
-        )
-    )
+    code = solve_file(
+        task_file, output,
+        form=form, show_all=show_all, seed=seed, prove=prove, why=why, time_limit=time_limit,
+    )  # fmt: skip
+    sys.exit(code)
 
 
 @main.command()

@@ -12,7 +12,7 @@ from synth.cli.session import interruptible, search_progress
 from synth.errors import SynthError
 from synth.export import prepare_directory, solution_to_json, write_files
 from synth.guide import solution_text
-from synth.synthesis import Status, solve
+from synth.synthesis import Status, explain, solve
 from synth.task import load_task
 
 if TYPE_CHECKING:
@@ -27,6 +27,7 @@ def solve_file(
     show_all: bool,
     seed: int,
     prove: bool,
+    why: bool,
     time_limit: float,
 ) -> ExitCode:
     """Solve the task of a file and say what was found.
@@ -38,6 +39,7 @@ def solve_file(
         show_all: Whether the text shows the alternative shapes.
         seed: Seed of the search.
         prove: Whether to prove how much better any shape may be.
+        why: Whether to look for what would release a task that is not met.
         time_limit: Time after which the best shape so far is given, s.
 
     Returns:
@@ -51,6 +53,8 @@ def solve_file(
             solution = solve(
                 task, seed=seed, prove=prove, time_limit=time_limit, stop=stop, progress=progress
             )
+            if why:
+                solution = explain(solution, stop=stop)
         if form == "json":
             click.echo(json.dumps(solution_to_json(solution), indent=2, allow_nan=False))
         else:

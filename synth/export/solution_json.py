@@ -50,6 +50,10 @@ def solution_to_json(solution: Solution) -> dict[str, Any]:
         "targets": _targets(task, designs[0]) if designs else _targets_missed(task),
         "motions": list(motions(task, designs[0])) if _has_motions(solution) else None,
         "bound": _bound(solution.bound),
+        "releases": [
+            {"limit": each.limit, "amount": each.amount, "share": each.share, "sentence": each.sentence}
+            for each in solution.releases
+        ],
         "alternatives": [_alternative(task, design) for design in designs[1:]],
     }
     return plain(content)

@@ -2,8 +2,8 @@
 
 from synth.synthesis.bound import Bound
 from synth.synthesis.motion import MOST_MOTIONS, Motion, motions
-from synth.synthesis.release import Release, releases
-from synth.synthesis.solution import Design, NotFoundError, Solution, Status, TargetResult, Timing
+from synth.synthesis.release import explain
+from synth.synthesis.solution import Design, NotFoundError, Release, Solution, Status, TargetResult, Timing
 from synth.synthesis.solve import Progress, solve
 from synth.synthesis.verification import Verification, Violation, verify
 
@@ -21,8 +21,8 @@ __all__ = [
     "Timing",
     "Verification",
     "Violation",
+    "explain",
     "motions",
-    "releases",
     "solve",
     "verify",
 ]

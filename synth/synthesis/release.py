@@ -15,6 +15,7 @@ import numpy as np
 
 from synth.geometry import Box
 from synth.robot import BasePose, Interval
+from synth.synthesis.solution import Release
 from synth.synthesis.solve import follow
 from synth.synthesis.verification import verify
 from synth.task import Obstacle
@@ -38,27 +39,6 @@ _FARTHEST_BASE = 1.0  # m
 
 
 @dataclass(frozen=True)
-class Release:
-    """One limit that blocks a task, and how much less of it would do.
-
-    Attributes:
-        limit: Name of the limit.
-        amount: By how much it has to give way, m or rad.
-        share: The same as a share of what the limit is, by which limits are compared.
-        sentence: What would do, for the user.
-        design: A shape that meets the task released so far, with its verification.
-        task: The task released so far.
-    """
-
-    limit: str
-    amount: float
-    share: float
-    sentence: str
-    design: Design
-    task: Task
-
-
-@dataclass(frozen=True)
 class _Limit:
     """A limit that can be relaxed: how far at most, and how."""
 
@@ -69,18 +49,21 @@ class _Limit:
     sentence: Callable[[float], str]
 
 
-def releases(solution: Solution, *, stop: Callable[[], bool] | None = None) -> tuple[Release, ...]:
-    """Return what would release a task that was not met, the least change first, the base last.
+def explain(solution: Solution, *, stop: Callable[[], bool] | None = None) -> Solution:
+    """Return a solution with what would release its task, if it was not met; it takes some seconds.
 
     Args:
         solution: What a synthesis found; of one that found every target nothing blocks.
         stop: Asked between the steps; when it says yes, what is known so far is returned.
 
     Returns:
-        One release for each limit that does alone. None may mean that several limits block together.
+        The same with `releases`, one for each limit that does alone, the least change first, the base
+        last. None may mean that several limits block together.
     """
-    if solution.found:
-        return ()
+    return solution if solution.found else replace(solution, releases=_releases(solution, stop))
+
+
+def _releases(solution: Solution, stop: Callable[[], bool] | None) -> tuple[Release, ...]:
     stop = stop or (lambda: False)
     found = []
     for limit in _limits(solution.task):

@@ -98,6 +98,27 @@ class Timing:
 
 
 @dataclass(frozen=True)
+class Release:
+    """One limit that blocks a task, and how much less of it would do.
+
+    Attributes:
+        limit: Name of the limit.
+        amount: By how much it has to give way, m or rad.
+        share: The same as a share of what the limit is, by which limits are compared.
+        sentence: What would do, for the user.
+        design: A shape that meets the task released so far, with its verification.
+        task: The task released so far.
+    """
+
+    limit: str
+    amount: float
+    share: float
+    sentence: str
+    design: Design
+    task: Task
+
+
+@dataclass(frozen=True)
 class Solution:
     """The result of a synthesis.
 
@@ -112,6 +133,7 @@ class Solution:
         time: Where the time went.
         bound: How much better than the best shape found any shape may be; None if that was not asked, or
             there is no proof for such a task.
+        releases: What would release a task that was not met; empty before `explain` has looked.
     """
 
     task: Task
@@ -123,6 +145,7 @@ class Solution:
     starts: int
     time: Timing
     bound: Bound | None = None
+    releases: tuple[Release, ...] = ()
 
     @property
     def found(self) -> bool:

@@ -17,7 +17,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from planted_blocked import BLOCKED, blocked_task
 
-from synth.synthesis import releases
+from synth.synthesis import explain
 from synth.synthesis.solve import follow
 
 STARTS = 8
@@ -34,7 +34,7 @@ def main() -> None:
         task = blocked_task(limit, number, lambda task: follow(task, (), starts=STARTS).found)
         solution = follow(task, (), starts=STARTS)
         began = time.perf_counter()
-        found = releases(solution)
+        found = explain(solution).releases
         seconds = time.perf_counter() - began
         names = [release.limit for release in found]
         right += names[:1] == [limit]
