@@ -26,10 +26,10 @@ def never():
 @pytest.mark.parametrize("seed", range(6))
 def test_no_shape_contradicts_the_bound_of_a_box_around_it(seed):
     rng = np.random.default_rng(seed)
-    population = shapes_about(ROBOT, 400, rng)
+    population = shapes_about(ROBOT, 250, rng)
     wrong, asked, ratios = contradictions(task_about(population, 1 + seed, rng), population, rng)
     assert wrong == 0
-    assert asked > 500
+    assert asked > 350
     # A bound that is nothing, or far below the misses, would not be contradicted either.
     assert len(ratios) > asked / 4
     assert ratios.max() > 0.99
