@@ -11,6 +11,7 @@ from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 import pytest
+from planted_obstacles import brute_distance
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from ruamel.yaml import YAML
 from scipy.spatial.transform import Rotation
@@ -160,8 +161,29 @@ class Shape(NamedTuple):
         assert self.bends @ self.lengths <= robot.link.max_total_bend + SLACK
         assert inside(self.d35, robot.rigid_link.d35)
         assert inside(self.d45, robot.rigid_link.d45)
-        for points in (self.link()[1], self.circle()[0], self.end_effector(joints)):
+        # The tube is as thick below its centreline as above, but for its first half diameter in the mount.
+        tube = self.link()[1][4:] - [0.0, 0.0, 0.5 * robot.link.diameter]
+        for points in (tube, self.circle()[0], self.end_effector(joints)):
             assert points[:, 2].min() >= floor - SLACK
+
+    def clearances(self, joints):
+        """Return how far points of tube and rigid link keep from the obstacles at each target, m."""
+        points = self.link()[1]
+        least = []
+        for theta1, tip in zip(np.asarray(joints)[:, 0], self.end_effector(joints), strict=True):
+            link = turned(points, np.array(theta1))
+            rod = link[-1] + np.linspace(0.0, 1.0, 200)[:, None] * (tip - link[-1])
+            solids = [obstacle.solid for obstacle in self.task.obstacles]
+            least.append(
+                min(
+                    min(
+                        brute_distance(solid, link[5:]).min() - 0.5 * self.task.robot.link.diameter,
+                        brute_distance(solid, rod).min(),
+                    )
+                    for solid in solids
+                )
+            )
+        return np.array(least)
 
     def measured(self, joints):
         """Return what `between` may speak of, in mm and deg."""
@@ -196,6 +218,13 @@ def test_problem(name):
         assert target["within_tolerance"] == (miss <= given.tolerance), target
     assert all(target["within_tolerance"] for target in targets) == (facts.status == "found")
 
+    if task.obstacles:
+        stated = np.array([target["clearance"] for target in targets])
+        assert (stated >= -SLACK).all()
+        # A lower bound, less what lies between the points, 8 mm apart.
+        assert (stated <= shape.clearances(joints) + SLACK).all()
+        assert (stated >= np.minimum(shape.clearances(joints), 0.1) - 5e-3).all()
+
     measured = shape.measured(joints)
     for quantity, (low, high) in facts.between.items():
         assert low <= measured[quantity] <= high, quantity
@@ -215,6 +244,8 @@ def test_planted_shape_is_what_its_facts_say(name):
     joints = np.radians(list(facts.planted.joints_deg.values()))
     shape.check_limits(joints)
     assert shape.misses(joints).max() <= facts.planted.within / 1e3
+    if task.obstacles:
+        assert shape.clearances(joints).min() >= 0.0
     if facts.status == "found":
         assert facts.planted.within / 1e3 <= task.tolerances.min()
 
