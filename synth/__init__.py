@@ -32,7 +32,7 @@ if TYPE_CHECKING:
         links_to_poses,
         why_no_link,
     )
-    from synth.synthesis import NotFoundError, Solution, Status, explain, solve, verify
+    from synth.synthesis import NotFoundError, Solution, Status, explain, motions, solve, verify
     from synth.task import Objective, Obstacle, PointTarget, Task, Topology, load_robot, load_task, parse_task
 
 _ROOMS = {
@@ -51,14 +51,13 @@ _ROOMS = {
         "links_to_poses",
         "why_no_link",
     ),
-    "synthesis": ("NotFoundError", "Solution", "Status", "explain", "solve", "verify"),
+    "synthesis": ("NotFoundError", "Solution", "Status", "explain", "motions", "solve", "verify"),
     "task": (
         "Objective",
         "Obstacle",
         "PointTarget",
         "Task",
         "Topology",
-        "explain",
         "load_robot",
         "load_task",
         "parse_task",
@@ -96,6 +95,7 @@ __all__ = [
     "load_robot",
     "load_task",
     "make_guide",
+    "motions",
     "parse_task",
     "solution_to_json",
     "solve",

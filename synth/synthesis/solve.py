@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.errors import SolverError
+from synth.robot import ANYWHERE, Interval, links_to_poses
 from synth.synthesis.certificate import Certifier
 from synth.synthesis.exact_starts import exact_designs
 from synth.synthesis.impossibility import why_impossible
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from synth.arrays import FloatArray
-    from synth.robot import Arm
+    from synth.robot import Arm, LinkShape
     from synth.synthesis.bound import Bound
     from synth.synthesis.separation import Separation
     from synth.task import Task
@@ -236,7 +237,7 @@ class _Search:
 
     def solution(self) -> Solution:
         """Rank what was found and say what it is worth."""
-        designs = self._for_all_targets(_best_of(self.part, self.designs))
+        designs = self._for_all_targets(_best_of(self.part, [*self.designs, *self._changing_little()]))
         status, reasons = self._verdict(designs)
         misses = _what_misses(self.task, designs[0]) if designs else []
         message = ": ".join(filter(None, [status.sentence, "; ".join([*misses, *reasons])]))
@@ -324,6 +325,30 @@ class _Search:
         (self.designs if design.verification.possible else self.blocked).append(design)
         return design
 
+    def _changing_little(self) -> list[Design]:
+        """Return the shapes found, bent again: to the same workspace, as near to the present one as may be.
+
+        Joint 1 takes up by how much the link is turned about axis 1, if its limits allow.
+        """
+        current, found = self.task.current, [design for design in self.designs if design.verification.found]
+        if current is None or not found:
+            return []
+        best = [design.arm for design in _best_of(self.part, found)]
+        ends = [arm.shape.end_frame() for arm in best]
+        positions, axes = np.array([end for _, end in ends]), np.array([frame[:, 0] for frame, _ in ends])
+        bent_again = []
+        for where in (ANYWHERE, Interval.fixed(0.0)):
+            with self.clock.on("solving"):
+                shapes = links_to_poses(
+                    self.task.robot.link, positions, axes, current=current, theta1=where, seed=self.seed
+                )
+            with self.clock.on("verifying"):
+                for arm, shape in zip(best, shapes, strict=True):
+                    if shape is not None:
+                        nearer = replace(arm, shape=shape)
+                        bent_again.append(Design(nearer, verify(self.part, nearer)))
+        return [design for design in bent_again if design.verification.found]
+
     def _for_all_targets(self, designs: tuple[Design, ...]) -> tuple[Design, ...]:
         """Return designs improved for all targets, and verified with them, in their order."""
         if self.part is self.task:
@@ -380,14 +405,24 @@ def _rank(task: Task, design: Design) -> tuple[int, float]:
     """Return what is smaller for a better design.
 
     First those that meet every target exactly, then those that do within its tolerance, both by their
-    gentleness; then the others by the task's objective.
+    gentleness or, if the task names the present shape, by how little they change it; then the others by
+    the task's objective.
     """
     check = design.verification
     relative = check.misses / task.tolerances
     if check.found:
-        return int(relative.max() > _EXACTLY), design.arm.shape.bending_energy
+        return int(relative.max() > _EXACTLY), _effort(task, design.arm.shape)
     weighted = task.weights * relative**2
     return 2, float(weighted.max() if task.objective is Objective.MINIMAX else weighted.sum())
+
+
+def _effort(task: Task, shape: LinkShape) -> float:
+    """Return how far the link moves from its present shape, m^2 in the mean, or else its bending energy."""
+    if task.current is None:
+        return shape.bending_energy
+    share = np.linspace(0.0, 1.0, 50)
+    moved = shape.point_at(share * shape.length) - task.current.point_at(share * task.current.length)
+    return float(np.mean(np.sum(moved**2, axis=1)))
 
 
 def _best_of(task: Task, designs: list[Design]) -> tuple[Design, ...]:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.geometry import Solid
-    from synth.robot import Robot
+    from synth.robot import LinkShape, Robot
 
 DEFAULT_TOLERANCE = 1e-3  # m: twice the error of the motion capture that measured the prototype
 
@@ -152,6 +152,8 @@ class Task:
         topology: Kind of shape asked for.
         objective: Norm of the misses that is made small.
         obstacles: What the robot keeps clear of at every target.
+        current: The present shape of the link; among the shapes that reach every target that is then the
+            best which changes it least.
     """
 
     name: str
@@ -162,6 +164,7 @@ class Task:
     topology: Topology = Topology.ANY
     objective: Objective = Objective.LEAST_SQUARES
     obstacles: tuple[Obstacle, ...] = ()
+    current: LinkShape | None = None
 
     @cached_property
     def table(self) -> TargetTable:

@@ -13,7 +13,18 @@ import numpy as np
 
 from synth.errors import InputError
 from synth.geometry import Box, Capsule
-from synth.robot import PRESETS, BasePose, Interval, JointLimits, MalleableLink, RigidLink, Robot
+from synth.robot import (
+    PRESETS,
+    BasePose,
+    Interval,
+    JointLimits,
+    LinkShape,
+    MalleableLink,
+    RigidLink,
+    Robot,
+    link_to_pose,
+    turned,
+)
 from synth.task.document import Document
 from synth.task.model import DEFAULT_TOLERANCE, Obstacle, PointTarget, TargetTable, Task
 from synth.task.points_file import read_points
@@ -21,6 +32,7 @@ from synth.task.schema import (
     SURFACES_TO_COME,
     BoxEntry,
     CapsuleEntry,
+    CurrentEntry,
     ObstacleEntry,
     RobotEntry,
     RobotFile,
@@ -125,11 +137,18 @@ def _task(document: Document, directory: Path, name: str) -> Task:
         unit = file.length_unit if file.robot.length_unit is None else file.robot.length_unit
         robot = to_robot(file.robot, PER_METRE[unit], "inline robot")
     assert robot is not None, "a robot is named or described"  # noqa: S101 - for the type checker
+    base = BasePose(np.array(file.base.position) / per_metre, math.radians(file.base.yaw_deg))
+    current = None if file.current is None else _to_shape(file.current, per_metre, robot, base)
+    if file.current is not None and current is None:
+        document.report(
+            ("current", "markers"), "were not found to be where this robot's link can put P3 and P4"
+        )
+        raise document.error()
     return Task(
         name=file.name or name,
         robot=robot,
         targets=_targets(file, scan, per_metre),
-        base=BasePose(np.array(file.base.position) / per_metre, math.radians(file.base.yaw_deg)),
+        base=base,
         floor=None if file.floor is None else file.floor / per_metre,
         topology=file.topology,
         objective=file.objective,
@@ -137,6 +156,7 @@ def _task(document: Document, directory: Path, name: str) -> Task:
             _to_obstacle(entry, per_metre, _default_name("obstacle", index))
             for index, entry in enumerate(file.obstacles)
         ),
+        current=current,
     )
 
 
@@ -226,6 +246,21 @@ def _to_obstacle(entry: ObstacleEntry, per_metre: float, name: str) -> Obstacle:
         case CapsuleEntry(from_=start, to=end, radius=radius):
             solid = Capsule(np.array([start, end]) / per_metre, radius / per_metre)
     return Obstacle(entry.name or name, solid)
+
+
+def _to_shape(entry: CurrentEntry, per_metre: float, robot: Robot, base: BasePose) -> LinkShape | None:
+    """Return the present shape of the link; None if none is found that has the markers.
+
+    Of markers the direction counts, and where the link's end is by it; not how far apart they are.
+    """
+    if entry.markers is None:
+        curvatures = np.array([arc.curvature for arc in entry.arcs]) * per_metre
+        return LinkShape(curvatures, np.array([arc.length for arc in entry.arcs]) / per_metre)
+    markers = np.array([entry.markers.P3, entry.markers.P4]) / per_metre
+    p3, p4 = turned(base.to_base(markers), np.asarray(-math.radians(entry.markers.joint1_deg)))
+    along = (p4 - p3) / max(float(np.linalg.norm(p4 - p3)), 1e-12)
+    end = p3 + robot.tip_offset * along - np.array([0.0, 0.0, robot.d12])
+    return link_to_pose(robot.link, end, along, theta1=Interval.fixed(0.0))
 
 
 def to_robot(entry: RobotEntry, per_metre: float, name: str) -> Robot:

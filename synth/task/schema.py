@@ -207,6 +207,39 @@ class ObstacleEntry(Strict):
         return self
 
 
+class ArcEntry(Strict):
+    """An arc of the link, in the frame that the link carries along without torsion."""
+
+    curvature: Annotated[list[Coordinate], Field(min_length=2, max_length=2)] = Field(
+        description="[kx, ky], per unit of length; kx > 0 bends towards +x"
+    )
+    length: Positive = Field(description="its length")
+
+
+class MarkersEntry(Strict):
+    """Where the axis points of joint 2 were measured."""
+
+    P3: Position = Field(description="[x, y, z] in the task frame")
+    P4: Position = Field(description="[x, y, z] in the task frame")
+    joint1_deg: Angle = Field(default=0.0, description="where joint 1 stood")
+
+
+class CurrentEntry(Strict):
+    """The present shape of the link: its arcs from P2 on, or markers."""
+
+    arcs: Annotated[list[ArcEntry], Field(min_length=1)] = Field(
+        default_factory=absent, description="the arcs of the link, as a solution states them"
+    )
+    markers: MarkersEntry = Field(default_factory=absent, description="P3 and P4 as measured")
+
+    @model_validator(mode="after")
+    def _one_of_both(self) -> CurrentEntry:
+        """Ask for exactly one description."""
+        if (self.arcs is None) == (self.markers is None):
+            raise ValueError("must have either arcs or markers")
+        return self
+
+
 class SurfaceEntry(Strict):
     """A surface that the workspace shall pass through."""
 
@@ -239,6 +272,9 @@ class TaskFile(Strict):
     targets: Annotated[list[TargetEntry], Field(min_length=1)] = Field(description="the points to reach")
     surface: SurfaceEntry = Field(default_factory=absent, description="a surface, given by points of it")
     obstacles: list[ObstacleEntry] = Field(default=[], description="solids to keep clear of")
+    current: CurrentEntry = Field(
+        default_factory=absent, description="the present shape of the link, which shall change little"
+    )
 
 
 class SurfaceTaskFile(TaskFile):
