@@ -27,7 +27,7 @@ def moved(one: LinkShape, other: LinkShape) -> float:
 
 @pytest.mark.parametrize("seed", range(3))
 def test_the_link_moves_less_than_to_the_gentlest_shape(seed):
-    task, planted = planted_task(seed, 3)
+    task, _ = planted_task(seed, 3)
     present = planted_arm(np.random.default_rng(seed)).shape
     gentlest = solve(task)
     nearest = solve(replace(task, current=present))

@@ -140,9 +140,8 @@ def _task(document: Document, directory: Path, name: str) -> Task:
     base = BasePose(np.array(file.base.position) / per_metre, math.radians(file.base.yaw_deg))
     current = None if file.current is None else _to_shape(file.current, per_metre, robot, base)
     if file.current is not None and current is None:
-        document.report(
-            ("current", "markers"), "were not found to be where this robot's link can put P3 and P4"
-        )
+        sentence = "no shape of this robot's link was found that puts P3 and P4 there"
+        document.report(("current", "markers"), sentence)
         raise document.error()
     return Task(
         name=file.name or name,
@@ -253,7 +252,7 @@ def _to_shape(entry: CurrentEntry, per_metre: float, robot: Robot, base: BasePos
 
     Of markers the direction counts, and where the link's end is by it; not how far apart they are.
     """
-    if entry.markers is None:
+    if entry.arcs:
         curvatures = np.array([arc.curvature for arc in entry.arcs]) * per_metre
         return LinkShape(curvatures, np.array([arc.length for arc in entry.arcs]) / per_metre)
     markers = np.array([entry.markers.P3, entry.markers.P4]) / per_metre
