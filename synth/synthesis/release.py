@@ -58,23 +58,24 @@ def explain(solution: Solution, *, stop: Callable[[], bool] | None = None) -> So
 
     Returns:
         The same with `releases`, one for each limit that does alone, the least change first, the base
-        last. None may mean that several limits block together.
+        last. None may mean that several limits block together. Should a shape turn up that meets the
+        task as it is, the solution with this shape.
     """
-    return solution if solution.found else replace(solution, releases=_releases(solution, stop))
-
-
-def _releases(solution: Solution, stop: Callable[[], bool] | None) -> tuple[Release, ...]:
+    if solution.found:
+        return solution
     stop = stop or (lambda: False)
     found = []
     for limit in _limits(solution.task):
         if stop():
             break
         release = _released(limit, solution, stop)
+        if release is not None and release.share < _NOTHING:
+            return follow(solution.task, [release.design], seed=solution.seed)
         if release is not None:
             found.append(release)
     found.sort(key=lambda release: release.share)
     moved = None if stop() else _base_moved(solution, stop)
-    return tuple(found if moved is None else [*found, moved])
+    return replace(solution, releases=tuple(found if moved is None else [*found, moved]))
 
 
 def _released(limit: _Limit, solution: Solution, stop: Callable[[], bool]) -> Release | None:
@@ -97,7 +98,12 @@ def _released(limit: _Limit, solution: Solution, stop: Callable[[], bool]) -> Re
         else:
             too_little = amount
     return Release(
-        limit.name, enough, enough / limit.scale, limit.sentence(enough), design, limit.relaxed(enough)
+        limit.name,
+        float(enough),
+        float(enough / limit.scale),
+        limit.sentence(enough),
+        design,
+        limit.relaxed(enough),
     )
 
 
@@ -105,6 +111,8 @@ def _needed(limit: _Limit, design: Design, most: float) -> float:
     """Return by how much a limit has to give way for one shape, infinite if that does not help it."""
     if not design.verification.found:
         return math.inf
+    if verify(limit.relaxed(0.0), replace(design.arm, robot=limit.relaxed(0.0).robot)).found:
+        return 0.0
     too_little, enough = 0.0, most
     while enough - too_little > 0.1 * _RESOLUTION * enough:
         amount = 0.5 * (too_little + enough)
@@ -113,8 +121,6 @@ def _needed(limit: _Limit, design: Design, most: float) -> float:
             enough = amount
         else:
             too_little = amount
-        if enough < _NOTHING * limit.scale:
-            break
     return enough
 
 

@@ -109,7 +109,12 @@ def solve(
 
 
 def follow(
-    task: Task, designs: Sequence[Design], *, starts: int = 0, stop: Callable[[], bool] | None = None
+    task: Task,
+    designs: Sequence[Design],
+    *,
+    starts: int = 0,
+    seed: int = 0,
+    stop: Callable[[], bool] | None = None,
 ) -> Solution:
     """Polish shapes for a task nearby, maybe of a robot nearly the same, and search little farther.
 
@@ -117,9 +122,10 @@ def follow(
         task: The task.
         designs: Shapes, the most promising first.
         starts: How many start points are polished, too, if none of the shapes will do.
+        seed: As for `solve`.
         stop: As for `solve`.
     """
-    search = _Search(task, part_of(task, 0), 0, _Clock(math.inf), stop or _never, _silent)
+    search = _Search(task, part_of(task, seed), seed, _Clock(math.inf), stop or _never, _silent)
     if not search.follow(designs) and starts:
         search.run(starts)
     return search.solution()
