@@ -2,7 +2,7 @@
 
 from synth.robot.arm import Arm, JointBranches
 from synth.robot.base import BasePose
-from synth.robot.clearance import CLEAR, MOST_CLEARANCE, ArmBody, turned
+from synth.robot.clearance import CLEAR, MOST_CLEARANCE, ArmBody
 from synth.robot.end_pose import ANYWHERE, PoseMiss, pose_miss
 from synth.robot.hardware import Interval, JointLimits, MalleableLink, RigidLink, Robot
 from synth.robot.kinematics import Kinematics
@@ -11,7 +11,7 @@ from synth.robot.pose_proofs import why_no_link
 from synth.robot.pose_search import link_to_pose, links_to_poses
 from synth.robot.presets import PRESETS
 from synth.robot.reach import LinkReach
-from synth.robot.turn import into_turn
+from synth.robot.turn import into_turn, turned
 from synth.robot.workspace import SurfaceMesh, Workspace
 
 __all__ = [

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.geometry import least_values
+from synth.robot.turn import turned
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -214,10 +215,3 @@ class _Ways:
     def joints(self, way: NDArray[np.intp], share: FloatArray) -> FloatArray:
         """Return the angles at a share of ways, both of shape (K,); shape (K, k), rad."""
         return np.asarray(self._start[way] + share[:, None] * self._change[way])
-
-
-def turned(points: FloatArray, angle: FloatArray) -> FloatArray:
-    """Return points, shape (..., 3), turned about axis 1 by angles that broadcast to (...), rad."""
-    c, s = np.cos(angle), np.sin(angle)
-    x, y, z = np.moveaxis(points, -1, 0)
-    return np.stack(np.broadcast_arrays(c * x - s * y, s * x + c * y, z), axis=-1)

@@ -124,7 +124,7 @@ def _bottom(
 
     def slope(theta2: FloatArray) -> FloatArray:
         theta1 = kinematics.best_theta1(theta2, points, base)
-        off = kinematics.forward(0.0, theta2) - turned(-theta1, points)
+        off = kinematics.forward(0.0, theta2) - turned(points, -theta1)
         return np.asarray(np.einsum("ki,ki->k", off, kinematics.tangent(theta2)))
 
     lower, middle, upper = bracket

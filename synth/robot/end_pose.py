@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.robot.hardware import Interval
-from synth.robot.turn import into_turn
+from synth.robot.turn import into_turn, turned
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -97,13 +97,6 @@ class EndPoses:
             np.concatenate([ends.position - p, scale * sideways], axis=1),
             np.concatenate([d_position, scale[..., None] * d_axis], axis=1),
         )
-
-
-def turned(vectors: FloatArray, angle: FloatArray) -> FloatArray:
-    """Return vectors, shape (..., 3) or (..., 2), turned about z by angles, shape (...)."""
-    cos, sin = np.cos(angle), np.sin(angle)
-    x, y, *rest = np.moveaxis(vectors, -1, 0)
-    return np.stack([cos * x - sin * y, sin * x + cos * y, *rest], axis=-1)
 
 
 def within(theta1: Interval, angle: ArrayLike) -> FloatArray:

@@ -40,7 +40,7 @@ class Kinematics:
         second = np.asarray(theta2, dtype=np.float64)
         v, t = self.frame[..., 1], self.frame[..., 2]
         circle = np.sin(second)[..., None] * v - np.cos(second)[..., None] * t
-        return turned(theta1, self.centre + self.radius[..., None] * circle)
+        return turned(self.centre + self.radius[..., None] * circle, theta1)
 
     def tangent(self, theta2: FloatArray) -> FloatArray:
         """Return the derivative of P5 by theta2 at theta1 = 0, shape (..., 3), m."""
@@ -129,7 +129,7 @@ class Kinematics:
             reached: P5 at these angles, shape (..., 3), m.
         """
         by_theta1 = reached[..., [1, 0, 2]] * np.array([-1.0, 1.0, 0.0])
-        return by_theta1, turned(joints[..., 0], self.tangent(joints[..., 1]))
+        return by_theta1, turned(self.tangent(joints[..., 1]), joints[..., 0])
 
     def each_target(self) -> Kinematics:
         """Return the same with one more axis behind the leading ones, for the targets."""

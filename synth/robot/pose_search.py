@@ -20,8 +20,9 @@ import numpy as np
 
 from synth.robot.arc_chains import ArcChains
 from synth.robot.chain_steps import ARRIVED, Wish, eased, improved
-from synth.robot.end_pose import ANYWHERE, EndPoses, pose_miss, turned, within
+from synth.robot.end_pose import ANYWHERE, EndPoses, pose_miss, within
 from synth.robot.link import chain_end
+from synth.robot.turn import turned
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

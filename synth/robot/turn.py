@@ -12,12 +12,17 @@ if TYPE_CHECKING:
     from synth.arrays import FloatArray
 
 
-def turned(theta1: ArrayLike, point: FloatArray) -> FloatArray:
-    """Return points, shape (..., 3), turned about z by theta1, shape (...), rad."""
-    x, y, z = point[..., 0], point[..., 1], point[..., 2]
-    cos, sin = np.cos(theta1), np.sin(theta1)
-    result = np.empty((*np.broadcast_shapes(cos.shape, z.shape), 3))
-    result[..., 0], result[..., 1], result[..., 2] = cos * x - sin * y, sin * x + cos * y, z
+def turned(points: FloatArray, theta1: ArrayLike) -> FloatArray:
+    """Return points turned about axis 1.
+
+    Args:
+        points: Points or directions, shape (..., 3); or the first two coordinates of each, (..., 2).
+        theta1: Angles that broadcast with the leading axes of the points, rad.
+    """
+    x, y, cos, sin = points[..., 0], points[..., 1], np.cos(theta1), np.sin(theta1)
+    result = np.empty((*np.broadcast_shapes(cos.shape, x.shape), points.shape[-1]))
+    result[..., 0], result[..., 1] = cos * x - sin * y, sin * x + cos * y
+    result[..., 2:] = points[..., 2:]
     return result
 
 
