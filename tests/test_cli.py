@@ -17,6 +17,8 @@ from test_task_reading import WRONG
 
 from synth.cli import main
 
+OUT_OF_REACH = Path(__file__).parents[1] / "problems" / "out-of-reach" / "task.yaml"
+
 HEADER = "synth: 1\nlength_unit: m\nrobot: malleable-2dof\n"
 
 
@@ -86,6 +88,17 @@ def test_a_task_out_of_reach_exits_with_1_and_still_writes_its_best_effort(tmp_p
     assert "reaches at most" in solution["message"]
     assert all(np.isfinite(target["miss"]) for target in solution["targets"])
     assert (tmp_path / "out" / "guide.pdf").exists()
+
+
+def test_why_says_what_would_release_a_task_that_is_not_met():
+    answer = run("solve", OUT_OF_REACH, "--why")
+    assert answer.returncode == 1
+    assert re.search(r"• a link 12\d\.\d mm longer, up to 82\d\.\d mm would do", answer.stdout)
+    assert re.search(r"• the base moved by 12\d\.\d mm, \(.*\) mm would do", answer.stdout)
+    answer = run("solve", OUT_OF_REACH, "--why", "--json")
+    first = json.loads(answer.stdout)["releases"][0]
+    assert first["limit"] == "link length"
+    assert 0.119 < first["amount"] < 0.125
 
 
 def test_wrong_input_exits_with_2_and_names_every_mistake(tmp_path):
