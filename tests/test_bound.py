@@ -12,7 +12,7 @@ from scipy.optimize import linprog
 from synth.export import solution_to_json
 from synth.robot import Interval, LinkReach
 from synth.synthesis import Status, solve, verify
-from synth.synthesis.bound import prove
+from synth.synthesis.bound import Bound, prove
 from synth.synthesis.bound.boxes import Boxes
 from synth.synthesis.bound.limits import Limits, ReachTable
 from synth.synthesis.bound.linear import combined, multipliers
@@ -201,3 +201,11 @@ def test_a_proof_that_is_stopped_keeps_its_bound():
             task, 1.7e-3, np.zeros(5), tightest=1e-3, stop=lambda looks=looks: next(looks, None) is None
         )
         assert part.lower_bound <= whole.lower_bound
+
+
+def test_a_bound_has_a_sentence_where_nothing_was_found():
+    assert (
+        Bound(2.0e-3, np.inf, 1e-3, 7).sentence
+        == "proven: every shape misses some target by at least 2.000 mm"
+    )
+    assert Bound(2.0e-3, 2.5e-3, 1e-3, 7).sentence.endswith("within 0.500 mm of the best there is")

@@ -62,12 +62,13 @@ class Bound:
     @property
     def sentence(self) -> str:
         """The same for the user."""
-        lower, gap = 1e3 * self.lower_bound, 1e3 * self.gap
-        # Rounded down, so that the sentence is true, too.
-        return (
-            f"proven: every shape misses some target by at least {math.floor(1e3 * lower) / 1e3:.3f} mm; "
-            f"the best found is within {math.ceil(1e3 * gap) / 1e3:.3f} mm of the best there is"
-        )
+        # Rounded down, and the gap up, so that the sentence is true, too.
+        lower = math.floor(1e6 * self.lower_bound) / 1e3
+        sentence = f"proven: every shape misses some target by at least {lower:.3f} mm"
+        if math.isinf(self.best_found):
+            return sentence
+        gap = math.ceil(1e6 * self.gap) / 1e3
+        return f"{sentence}; the best found is within {gap:.3f} mm of the best there is"
 
 
 def prove(
