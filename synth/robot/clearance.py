@@ -115,6 +115,8 @@ class ArmBody:
             (n, len(solids), 2), the tube first. On a way that is not clear, minus infinity.
         """
         ways, count = _Ways(start, end), len(solids)
+        if count == 0:
+            return np.empty((len(start), 0, 2))
         way, solid = np.repeat(np.arange(len(start)), count), np.tile(np.arange(count), len(start))
         link, rod = self.arm.shape.length, self.rod_length
         turn, second = ways.travel.T[:, way]

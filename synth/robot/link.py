@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -142,7 +143,7 @@ class LinkShape:
         s = np.asarray(arc_length, dtype=np.float64)
         starts = np.concatenate([[0.0], np.cumsum(self.lengths)[:-1]])
         arc = np.clip(np.searchsorted(starts, s, side="right") - 1, 0, len(starts) - 1)
-        rotations, origins = self._arc_frames()
+        rotations, origins = self._arc_frames
         _, within = arc_motion(self.curvatures[arc], s - starts[arc])
         return np.asarray(origins[arc] + np.einsum("...ij,...j->...i", rotations[arc], within))
 
@@ -160,7 +161,7 @@ class LinkShape:
         Args:
             beyond: Arc length from which on points count, m.
         """
-        rotations, origins = self._arc_frames()
+        rotations, origins = self._arc_frames
         starts = np.concatenate([[0.0], np.cumsum(self.lengths)[:-1]])
         heights = [
             *origins[starts >= beyond, 2],
@@ -180,6 +181,7 @@ class LinkShape:
                 heights.append(origin[2] + float(rotation[2] @ arc_motion(k, turn / bend)[1]))
         return float(min(heights))
 
+    @cached_property
     def _arc_frames(self) -> tuple[FloatArray, FloatArray]:
         """Return the frame at the start of each arc: rotations (m, 3, 3) and origins (m, 3)."""
         rotations, displacements = arc_motion(self.curvatures, self.lengths)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 from collections import Counter
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.geometry import Invariants
+    from synth.robot import Robot
     from synth.task import Task
 
 _MOST_TARGETS = 40
@@ -64,18 +66,19 @@ class Start:
     joints: FloatArray
 
 
-def starts(task: Task, rng: np.random.Generator, *, quick: bool = False) -> Iterator[Start]:
+def starts(task: Task, seed: int, *, quick: bool = False) -> Iterator[Start]:
     """Yield distinct start points, the most promising first.
 
     Args:
         task: The task.
-        rng: Source of randomness.
+        seed: Seed of the random shapes.
         quick: Whether to end with what the first, small step finds.
 
     Yields:
         Start points; none where no random shape respects the limits and the floor.
     """
-    for start in _starts(_fewer_targets(task, rng), rng, quick=quick):
+    rng = np.random.default_rng([seed, 1])
+    for start in _starts(_fewer_targets(task, rng), seed, rng, quick=quick):
         joints = start.joints
         if len(joints) < len(task.targets):
             joints, _ = start.arm.closest_joints(task.table.positions)
@@ -90,13 +93,29 @@ def _fewer_targets(task: Task, rng: np.random.Generator) -> Task:
     return replace(task, targets=task.table.take(chosen))
 
 
-def _starts(task: Task, rng: np.random.Generator, *, quick: bool) -> Iterator[Start]:
+@lru_cache(maxsize=4)
+def _small_population(robot: Robot, floor: float | None, seed: int) -> Population:
+    """Return the shapes of the first step, the same for all tasks of a robot, a floor and a seed.
+
+    They keep where they end, which takes a few megabytes; the next task need not ask again.
+    """
+    return _population(robot, floor, _STEPS[0][0], np.random.default_rng([seed, 0]))
+
+
+def _population(robot: Robot, floor: float | None, size: int, rng: np.random.Generator) -> Population:
+    """Return random shapes whose links end above the floor."""
+    population = Population.sample(robot, size, rng)
+    return population if floor is None else population.take(population.end[1][:, 2] > floor)
+
+
+def _starts(task: Task, seed: int, rng: np.random.Generator, *, quick: bool) -> Iterator[Start]:
     """Yield start points for a task of few targets, each step with more effort than the one before."""
     designs, after_hops = exact_designs(task) or (), None
     for size, shortlist, count in _STEPS:
-        population = Population.sample(task.robot, size, rng)
-        if task.floor is not None:
-            population = population.take(population.end[1][:, 2] > task.floor)
+        if size == _STEPS[0][0]:
+            population = _small_population(task.robot, task.floor, seed)
+        else:
+            population = _population(task.robot, task.floor, size, rng)
         if not len(population.length):
             return
         cost = _costs(task, estimated_misses(task, population)) + _category_cost(task, population)

@@ -264,7 +264,7 @@ class _Search:
         return _STARTS_WHEN_IMPOSSIBLE if self._impossible else _STARTS_AT_MOST
 
     def _start_points(self, *, quick: bool) -> Iterator[Start]:
-        candidates = starts(self.part, np.random.default_rng(self.seed), quick=quick)
+        candidates = starts(self.part, self.seed, quick=quick)
         while True:
             with self.clock.on("screening"):
                 start = next(candidates, None)
