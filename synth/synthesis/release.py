@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 # How far a limit is relaxed, as a share of the most, and how many starts are polished then.
-_RELAXED = ((0.04, 6), (0.25, 4), (1.0, 6))
+_RELAXED = ((0.04, 8), (0.25, 8), (1.0, 6))
 _RESOLUTION = 0.03  # of an amount
 _NOTHING = 1e-6  # of a limit
 _HALVINGS = 6
