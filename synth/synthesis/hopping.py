@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.synthesis.population import ARCS, Population, into_limits
-from synth.synthesis.refinement import Refined, nearest_theta2, refine
+from synth.synthesis.refinement import nearest_theta2, refine
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from synth.synthesis.refinement import Refined
     from synth.task import Task
 
 # Rounds, shapes kept of those that miss differently, and children of each.
@@ -45,17 +46,8 @@ def hopped(task: Task, refined: Refined, rng: np.random.Generator) -> Refined:
         changed = into_limits(task.robot, unknowns + size * rng.normal(size=unknowns.shape))
         population = Population(task.robot, changed)
         children = refine(task, population, nearest_theta2(task, population.kinematics))
-        refined = better(refined, children)
+        refined = refined.improved_by(children)
     return refined
-
-
-def better(one: Refined, other: Refined) -> Refined:
-    """Return as many of the best of both as there are of the first."""
-    cost = np.concatenate([one.cost, other.cost])
-    best = np.argsort(cost, kind="stable")[: len(one.cost)]
-    unknowns = np.concatenate([one.population.unknowns, other.population.unknowns])
-    joints = np.concatenate([one.joints, other.joints])
-    return Refined(Population(one.population.robot, unknowns[best]), joints[best], cost[best])
 
 
 def _different(refined: Refined) -> NDArray[np.intp]:

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import FloatArray, frozen
-from synth.geometry import Box
 from synth.robot import CLEAR, ArmBody, turned
 from synth.synthesis.solution import joints_reaching
 
@@ -124,14 +123,8 @@ class _Room:
         self._body = ArmBody(design.arm)
         self._limits = task.robot.joint_limits
         self._solids: list[Solid] = list(task.solids)
-        self._of_rod = list(self._solids)
+        # For the rod only: joint 1 keeps all heights, so the tube stays where it is over the floor.
         self._floor = -np.inf if task.floor is None else task.floor
-        if task.floor is not None:
-            # Joint 1 keeps all heights, so the tube stays where it is over the floor.
-            reach = 4.0 * (task.robot.d12 + design.arm.shape.length + self._body.rod_length)
-            self._of_rod.append(
-                Box(np.array([0.0, 0.0, task.floor - 0.5 * reach]), np.array([reach, reach, reach]))
-            )
 
     def ways(self, here: FloatArray, there: FloatArray) -> dict[tuple[int, int], FloatArray]:
         """Return a way between each posture of one target, (k, 2), and each of the next, (l, 2)."""
@@ -208,12 +201,10 @@ class _Room:
         rod = body.rod(joint + share * (body.rod_length - joint), joints[:, 1:])
         apart = np.linalg.norm(rod[:, :, None] - tube[_before_the_joint(body, share)], axis=-1)
         least = apart.min(axis=(1, 2)) - body.tube_radius - body.rod_radius
-        for points, radius, solids in (
-            (tube, body.tube_radius, self._solids),
-            (rod, body.rod_radius, self._of_rod),
-        ):
+        least = np.minimum(least, rod[..., 2].min(axis=1) - body.rod_radius - self._floor)
+        for points, radius in ((tube, body.tube_radius), (rod, body.rod_radius)):
             there = turned(points, joints[:, :1])
-            for solid in solids:
+            for solid in self._solids:
                 least = np.minimum(least, solid.distance(there).min(axis=1) - radius)
         return np.asarray(least)
 

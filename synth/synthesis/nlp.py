@@ -59,7 +59,6 @@ _CLEARANCE = 2e-4
 # length, m, because the solver scales the objective down by its steepest slope.
 _LARGE_MISS = 0.01
 _OVERLAP_UNIT = 1e-3
-# How far a start is moved off its bounds.
 # Barrier and distance from the bounds with which the solver begins near the answer.
 _NEAR = 1e-6
 _PUSHES = ("ipopt.bound_push", "ipopt.bound_frac", "ipopt.slack_bound_push", "ipopt.slack_bound_frac")

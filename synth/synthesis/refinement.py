@@ -16,6 +16,8 @@ from synth.synthesis.population import Population, into_limits
 from synth.task import Topology
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from synth.arrays import FloatArray
     from synth.robot import Interval, Kinematics
     from synth.task import Task
@@ -39,6 +41,17 @@ class Refined:
     population: Population
     joints: FloatArray
     cost: FloatArray
+
+    def chosen_with(self, other: Refined, chosen: NDArray[np.intp]) -> Refined:
+        """Return some of these and of others, counted through: these first, then the others."""
+        unknowns = np.concatenate([self.population.unknowns, other.population.unknowns])
+        joints, cost = np.concatenate([self.joints, other.joints]), np.concatenate([self.cost, other.cost])
+        return Refined(Population(self.population.robot, unknowns[chosen]), joints[chosen], cost[chosen])
+
+    def improved_by(self, other: Refined) -> Refined:
+        """Return as many of the best of these and others as there are of these."""
+        order = np.argsort(np.concatenate([self.cost, other.cost]), kind="stable")
+        return self.chosen_with(other, order[: len(self.cost)])
 
 
 def refine(task: Task, population: Population, theta2: FloatArray, iterations: int = _ITERATIONS) -> Refined:

@@ -111,13 +111,17 @@ def _needed(limit: _Limit, design: Design, most: float) -> float:
     """Return by how much a limit has to give way for one shape, infinite if that does not help it."""
     if not design.verification.found:
         return math.inf
-    if verify(limit.relaxed(0.0), replace(design.arm, robot=limit.relaxed(0.0).robot)).found:
+
+    def does(amount: float) -> bool:
+        task = limit.relaxed(amount)
+        return verify(task, replace(design.arm, robot=task.robot), design.verification.joints).found
+
+    if does(0.0):
         return 0.0
     too_little, enough = 0.0, most
     while enough - too_little > 0.1 * _RESOLUTION * enough:
         amount = 0.5 * (too_little + enough)
-        task = limit.relaxed(amount)
-        if verify(task, replace(design.arm, robot=task.robot), design.verification.joints).found:
+        if does(amount):
             enough = amount
         else:
             too_little = amount

@@ -16,7 +16,7 @@ import numpy as np
 
 from synth.robot import Arm, into_turn
 from synth.synthesis.exact_starts import exact_designs, nearest_to_designs
-from synth.synthesis.hopping import better, hopped
+from synth.synthesis.hopping import hopped
 from synth.synthesis.population import Population, into_limits
 from synth.synthesis.refinement import Refined, category_offsets, refine, relative_weights, with_theta1
 from synth.synthesis.separation import overlaps
@@ -132,7 +132,7 @@ def _starts(task: Task, seed: int, rng: np.random.Generator, *, quick: bool) -> 
         if quick:
             return
         # The second step does not begin anew: what was hopped to from the first one goes into its hops.
-        after_hops = hopped(task, refined if after_hops is None else better(refined, after_hops), rng)
+        after_hops = hopped(task, refined if after_hops is None else refined.improved_by(after_hops), rng)
         yield from itertools.islice(_distinct(task, after_hops), _STARTS_AFTER_HOPS)
     if after_hops is not None:
         yield from _distinct(task, _with_branches_swapped(task, after_hops, rng))
@@ -188,7 +188,7 @@ def _wandered_clear(task: Task, refined: Refined, rng: np.random.Generator) -> R
         children = refine(task, Population(task.robot, x), refined.joints[parents, :, 1])
         child_total = children.cost + _overlap_cost(task, children.population, children.joints)
         best = np.argsort(np.concatenate([total, child_total]), kind="stable")[: len(total)]
-        refined = _best_of_both(refined, children, best)
+        refined = refined.chosen_with(children, best)
         total = np.concatenate([total, child_total])[best]
     return refined
 
@@ -209,7 +209,7 @@ def _with_branches_swapped(task: Task, refined: Refined, rng: np.random.Generato
         swapped = _swapped_once(task, refined, rng)
         if swapped is None or refined.cost.min() < _EXACT:
             break
-        refined = _better(refined, refine(task, *swapped))
+        refined = refined.improved_by(refine(task, *swapped))
     return refined
 
 
@@ -239,20 +239,6 @@ def _swapped_once(
     chance = np.minimum(rng.choice(_SWAPPED_TARGETS, len(copies)) / len(task.targets), 1.0)
     swap = near[copies] & (rng.uniform(size=(len(copies), len(task.targets))) < chance[:, None])
     return population.take(copies), np.where(swap, swapped[copies], theta2[copies])
-
-
-def _better(one: Refined, other: Refined) -> Refined:
-    """Return as many of the best of both as there are of the first."""
-    best = np.argsort(np.concatenate([one.cost, other.cost]), kind="stable")[: len(one.cost)]
-    return _best_of_both(one, other, best)
-
-
-def _best_of_both(one: Refined, other: Refined, best: NDArray[np.intp]) -> Refined:
-    """Return some of both, counted through."""
-    unknowns = np.concatenate([one.population.unknowns, other.population.unknowns])
-    joints = np.concatenate([one.joints, other.joints])
-    cost = np.concatenate([one.cost, other.cost])
-    return Refined(Population(one.population.robot, unknowns[best]), joints[best], cost[best])
 
 
 def estimated_misses(task: Task, population: Population) -> FloatArray:
