@@ -153,7 +153,8 @@ def test_a_time_limit_keeps_the_best_so_far(tmp_path):
         for target, shift in zip(task.targets, noise, strict=True)
     ]
     file = tmp_path / "noisy.yaml"
-    file.write_text(f"{HEADER}floor: null\ntargets: {json.dumps(targets)}\n")
+    # The worst miss of so many is far more work than these seconds allow.
+    file.write_text(f"{HEADER}floor: null\nobjective: minimax\ntargets: {json.dumps(targets)}\n")
     answer = run("solve", file, "--json", "--time-limit", "0.001")
     solution = json.loads(answer.stdout)
     assert answer.returncode == 1
@@ -165,14 +166,15 @@ def test_a_time_limit_keeps_the_best_so_far(tmp_path):
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows sends no SIGINT to one process")
 def test_ctrl_c_keeps_the_best_so_far(tmp_path):
-    task, _ = planted_task(5, 200)
-    noise = np.random.default_rng(0).normal(scale=0.03, size=(200, 3))
+    task, _ = planted_task(5, 40)
+    noise = np.random.default_rng(0).normal(scale=0.03, size=(40, 3))
     targets = [
         {"position": (target.position + shift).tolist()}
         for target, shift in zip(task.targets, noise, strict=True)
     ]
     file = tmp_path / "noisy.yaml"
-    file.write_text(f"{HEADER}floor: null\ntargets: {json.dumps(targets)}\n")
+    # The worst miss of so many is far more work than these seconds allow.
+    file.write_text(f"{HEADER}floor: null\nobjective: minimax\ntargets: {json.dumps(targets)}\n")
     with subprocess.Popen(
         [sys.executable, "-m", "synth", "solve", str(file), "--json"],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,

@@ -1,5 +1,6 @@
 """The robot: hardware, malleable link, forward and inverse kinematics, workspace."""
 
+from synth.robot.arc_chains import ArcChains
 from synth.robot.arm import Arm, JointBranches
 from synth.robot.base import BasePose
 from synth.robot.clearance import CLEAR, MOST_CLEARANCE, ArmBody
@@ -19,6 +20,7 @@ __all__ = [
     "CLEAR",
     "MOST_CLEARANCE",
     "PRESETS",
+    "ArcChains",
     "Arm",
     "ArmBody",
     "BasePose",

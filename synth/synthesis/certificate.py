@@ -16,7 +16,6 @@ from synth.synthesis.exact_starts import nearest_to_designs
 from synth.synthesis.nlp import Structure, shared_nlp
 from synth.synthesis.population import ARCS, Population
 from synth.synthesis.refinement import refine
-from synth.synthesis.screening import limited_misses
 from synth.task import Objective
 
 if TYPE_CHECKING:
@@ -103,8 +102,7 @@ class Certifier:
         """Look for a link whose workspace is about that of a circle; return the least worst miss found, m."""
         near = nearest_to_designs(self._links, [Invariants.from_circle(circle)], _NEAREST)
         links = self._links.take(near)
-        theta2, _ = limited_misses(self.task, links)
-        refined = refine(self.task, links, theta2.T)
+        refined = refine(self.task, links)
         for index in np.argsort(refined.cost, kind="stable")[:_TRIED]:
             self._polish(refined.population.arm(int(index), self.task.base), refined.joints[index])
         return self._best()

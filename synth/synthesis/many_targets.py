@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.synthesis.population import Population
-from synth.synthesis.refinement import nearest_theta2, refine
+from synth.synthesis.refinement import refine
 from synth.task import Objective
 
 if TYPE_CHECKING:
@@ -61,9 +61,7 @@ def improved(task: Task, arm: Arm) -> Arm:
     """
     for count, steps in ((_SAMPLE, _STEPS), (len(task.targets), _STEPS_WITH_ALL)):
         some = _random_part(task, count, 0)
-        refined = refine(
-            some, Population.of(arm), nearest_theta2(some, arm.kinematics)[None], iterations=steps
-        )
+        refined = refine(some, Population.of(arm), iterations=steps)
         arm = refined.population.arm(0, task.base)
     return arm
 

@@ -9,13 +9,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import FloatArray, frozen
-from synth.robot import Arm, BasePose, Kinematics, LinkShape, chain_end, chain_points
+from synth.robot import ArcChains, Arm, BasePose, Kinematics, LinkShape, chain_end, chain_points
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.robot import Robot
 
+_AT_LIMIT = 1e-9
+_TINY = 1e-300
+_LEAST_RADIUS = 1e-9  # m; with P3, P4, P5 in line the radius has no derivative
 ARCS = 4  # equal arcs of a link: eight curvatures and a length for the five numbers of an end pose
 
 
@@ -93,6 +96,30 @@ class Population:
         return frame, position + np.array([0.0, 0.0, self.robot.d12])
 
     @cached_property
+    def motion(self) -> FloatArray:
+        """How the unknowns move the link's end and the circle of P5, shape (N, 6 or 8, unknowns).
+
+        Rows: the shift of the end; its turn, as a rotation vector; where the rigid link is free, the
+        changes of the circle's offset along axis 2 and of its radius. For one leading axis.
+        """
+        robot, link, root = self.robot, self.robot.link, np.sqrt(ARCS)
+        share = root * (self.length / link.length.middle - 1.0)
+        ends = ArcChains(link, ARCS).ends(np.column_stack([self.unknowns[:, : 2 * ARCS], share]))
+        motion = np.concatenate([link.min_bend_radius * ends.d_position, ends.rotation], axis=1)
+        motion[:, :, -1] *= root / link.length.middle
+        if robot.rigid_link.is_fixed:
+            return motion
+        d35, d45 = self.rigid_links
+        offset, radius = robot.end_effector_circle(d35, d45)
+        radius = np.maximum(radius, _LEAST_RADIUS)
+        along = (offset + robot.tip_offset) / robot.d34
+        by_d35 = np.stack([d35 / robot.d34, d35 * (1.0 - along) / radius], axis=-1)
+        by_d45 = np.stack([-d45 / robot.d34, d45 * along / radius], axis=-1)
+        whole = np.zeros((len(motion), 8, motion.shape[2] + 2))
+        whole[:, :6, :-2], whole[:, 6:, -2], whole[:, 6:, -1] = motion, by_d35, by_d45
+        return whole
+
+    @cached_property
     def centreline(self) -> FloatArray:
         """Points of the centrelines in the base frame, four on each arc, shape (..., 4 ARCS, 3), m."""
         pieces = 4
@@ -107,9 +134,13 @@ class Population:
         offset, radius = self.robot.end_effector_circle(*self.rigid_links)
         return Kinematics(frame, position + offset[..., None] * frame[..., 0], radius)
 
-    def take(self, chosen: NDArray[np.intp] | NDArray[np.bool_]) -> Population:
+    def take(self, chosen: NDArray[np.intp] | NDArray[np.bool_] | slice) -> Population:
         """Return some of the shapes."""
         return Population(self.robot, self.unknowns[chosen])
+
+    def where(self, mine: NDArray[np.bool_], other: Population) -> Population:
+        """Return these shapes where a mask, shape (N,), says so, and others elsewhere."""
+        return Population(self.robot, np.where(mine[:, None], self.unknowns, other.unknowns))
 
     def arm(self, index: int, base: BasePose) -> Arm:
         """Return one shape as a robot that stands at `base`."""
@@ -141,3 +172,43 @@ def into_limits(robot: Robot, unknowns: FloatArray) -> FloatArray:
         d45 = np.clip(unknowns[..., -1], np.abs(d35 - robot.d34), d35 + robot.d34)
         unknowns[..., -2], unknowns[..., -1] = d35, np.clip(d45, rigid.d45.lower, rigid.d45.upper)
     return unknowns
+
+
+def free_directions(population: Population, slope: FloatArray) -> FloatArray:
+    """Return projections onto the directions in which shapes may move, shape (N, unknowns, unknowns).
+
+    A limit that is reached, and beyond which a slope leads, takes away its normal.
+
+    Args:
+        population: Shapes within their limits, of shape (N,).
+        slope: Slopes of what is to become less, shape (N, unknowns).
+    """
+    robot, x, count = population.robot, population.unknowns, len(slope)
+    free = np.tile(np.eye(x.shape[1]), (count, 1, 1))
+    curvatures = x[:, : 2 * ARCS].reshape(count, ARCS, 2)
+    bends = np.linalg.norm(curvatures, axis=-1)
+    bent = curvatures / np.maximum(bends, _TINY)[..., None]
+    tighter = np.einsum("nai,nai->na", slope[:, : 2 * ARCS].reshape(count, ARCS, 2), bent) < 0.0
+    tightest = tighter & (bends >= 1.0 - _AT_LIMIT)
+    for arc in range(ARCS):
+        mine = slice(2 * arc, 2 * arc + 2)
+        normal = bent[:, arc] * tightest[:, arc, None]
+        free[:, mine, mine] -= normal[:, :, None] * normal[:, None, :]
+    rigid = robot.rigid_link
+    intervals = [robot.link.length] if rigid.is_fixed else [robot.link.length, rigid.d35, rigid.d45]
+    for unknown, interval in enumerate(intervals, start=2 * ARCS):
+        shorter, longer = slope[:, unknown] > 0.0, slope[:, unknown] < 0.0
+        shortest = x[:, unknown] <= interval.lower + _AT_LIMIT
+        longest = x[:, unknown] >= interval.upper - _AT_LIMIT
+        free[:, unknown, unknown] -= (shorter & shortest) | (longer & longest)
+    total = bends.sum(axis=1)
+    normal = np.zeros(x.shape)
+    normal[:, : 2 * ARCS] = (bent * population.length[:, None, None]).reshape(count, -1)
+    normal[:, 2 * ARCS] = total
+    normal = (free @ normal[..., None])[..., 0]
+    squared = np.einsum("ni,ni->n", normal, normal)
+    most = robot.link.max_total_bend * ARCS / robot.link.max_curvature
+    more = np.einsum("ni,ni->n", slope, normal) < 0.0
+    held = more & (total * population.length >= most - _AT_LIMIT) & (squared > _AT_LIMIT)
+    free -= (held / np.maximum(squared, _TINY))[:, None, None] * normal[:, :, None] * normal[:, None, :]
+    return free

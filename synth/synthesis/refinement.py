@@ -1,7 +1,7 @@
 """Gauss-Newton on many shapes at once: from promising starts to the bottoms of their valleys.
 
-It knows neither the floor nor the gentlest bend, and it is not exact: it only finds out cheaply which
-of some hundred starts lead anywhere, so that the nonlinear program need not try them all.
+It knows neither the floor nor the gentlest bend: it finds out cheaply which of some hundred starts lead
+anywhere, so that the nonlinear program need not try them all.
 """
 
 from __future__ import annotations
@@ -11,21 +11,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.robot import into_turn
-from synth.synthesis.population import Population, into_limits
-from synth.task import Topology
+from synth.synthesis.category_offsets import category_offsets, category_slopes
+from synth.synthesis.population import Population, free_directions, into_limits
+from synth.synthesis.postures import Aims, Postures
+from synth.synthesis.residuals import Residuals
+from synth.task import Objective
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
-    from synth.robot import Interval, Kinematics
     from synth.task import Task
 
-_ITERATIONS = 14
-_DIFFERENCE = 1e-6  # step of the finite differences over the unknowns, which are of order one
-_ARM_LENGTH = 0.5  # an axis 1 rad off its category puts P5 about this far off, m
-_LEAST_DAMPING, _MOST_DAMPING = 1e-9, 1e9
+_ITERATIONS = 20
+# After so many steps each target may take the nearer branch of joint 2, wherever it is.
+_STEPS_ON_BRANCHES = 4
+_FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-3, 1e-9, 1e9
+# Exponents of the misses; where the worst one counts it is the large one after a third of the steps.
+_SQUARES, _NEARLY_WORST, _WORST_AFTER = 2.0, 12.0, 3
+_TOGETHER = 4000  # postures, so that the arrays stay in the cache
+_TINY = 1e-30  # m^2
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,26 +40,38 @@ class Refined:
     Attributes:
         population: The shapes, of shape (N,).
         joints: Their joint angles for each target, shape (N, n, 2), rad.
-        cost: Their mean squared misses, weighted with `relative_weights`, shape (N,), m^2.
+        cost: Their mean squared misses, weighted with `relative_weights`, shape (N,), m^2; where the worst
+            miss counts, nearly that one squared, and not above it where the valley ends.
     """
 
     population: Population
     joints: FloatArray
     cost: FloatArray
 
-    def chosen_with(self, other: Refined, chosen: NDArray[np.intp]) -> Refined:
-        """Return some of these and of others, counted through: these first, then the others."""
-        unknowns = np.concatenate([self.population.unknowns, other.population.unknowns])
-        joints, cost = np.concatenate([self.joints, other.joints]), np.concatenate([self.cost, other.cost])
-        return Refined(Population(self.population.robot, unknowns[chosen]), joints[chosen], cost[chosen])
+    @classmethod
+    def joined(cls, parts: list[Refined]) -> Refined:
+        """Return the shapes of all parts, in order."""
+        unknowns = np.concatenate([part.population.unknowns for part in parts])
+        joints = np.concatenate([part.joints for part in parts])
+        cost = np.concatenate([part.cost for part in parts])
+        return cls(Population(parts[0].population.robot, unknowns), joints, cost)
+
+    def take(self, chosen: NDArray[np.intp]) -> Refined:
+        """Return some of the shapes."""
+        return Refined(self.population.take(chosen), self.joints[chosen], self.cost[chosen])
+
+    def best(self, count: int) -> Refined:
+        """Return the best shapes in order, `count` at most."""
+        return self.take(np.argsort(self.cost, kind="stable")[:count])
 
     def improved_by(self, other: Refined) -> Refined:
         """Return as many of the best of these and others as there are of these."""
-        order = np.argsort(np.concatenate([self.cost, other.cost]), kind="stable")
-        return self.chosen_with(other, order[: len(self.cost)])
+        return Refined.joined([self, other]).best(len(self.cost))
 
 
-def refine(task: Task, population: Population, theta2: FloatArray, iterations: int = _ITERATIONS) -> Refined:
+def refine(
+    task: Task, population: Population, theta2: FloatArray | None = None, iterations: int = _ITERATIONS
+) -> Refined:
     """Improve shapes by damped Gauss-Newton steps, their limits and those of the joints observed.
 
     Each target keeps its own joint angles, which follow the shape: the residual is what is left of
@@ -63,43 +80,25 @@ def refine(task: Task, population: Population, theta2: FloatArray, iterations: i
     Args:
         task: The task.
         population: The starts, of shape (N,).
-        theta2: Angle of joint 2 at which each start is nearest to each target, shape (N, n), rad.
+        theta2: Angle of joint 2 at which each start shall meet each target, shape (N, n), rad, and stay on
+            that branch; by default the nearest one, which is looked for again from time to time.
         iterations: Number of steps.
 
     Returns:
         The improved shapes.
     """
-    limits = task.robot.joint_limits
-    weights = relative_weights(task)
-    joints = with_theta1(task, population, theta2)
-    cost, damping = _cost(task, population, joints, weights), np.full(len(theta2), 1e-3)
-    for _ in range(iterations):
-        step, follow = _step(task, population, joints, weights, damping)
-        moved = Population(task.robot, into_limits(task.robot, population.unknowns + step))
-        # By how much the joints follow is only known to first order: theta1 is then set right.
-        theta2 = np.clip(joints[..., 1] + follow, limits.second.lower, limits.second.upper)
-        moved_joints = with_theta1(task, moved, theta2)
-        moved_cost = _cost(task, moved, moved_joints, weights)
-        better = moved_cost < cost
-        population = Population(task.robot, np.where(better[:, None], moved.unknowns, population.unknowns))
-        joints = np.where(better[:, None, None], moved_joints, joints)
-        cost = np.where(better, moved_cost, cost)
-        damping = np.clip(np.where(better, 0.2 * damping, 8.0 * damping), _LEAST_DAMPING, _MOST_DAMPING)
-    return Refined(population, joints, cost)
-
-
-def nearest_theta2(task: Task, kinematics: Kinematics) -> FloatArray:
-    """Return the better branch of joint 2 for each target, moved into its limits, shape (..., n), rad.
-
-    Args:
-        task: The task.
-        kinematics: The joints of shapes, of shape (...).
-    """
-    limits, one = task.robot.joint_limits, kinematics.each_target()
-    both = into_turn(one.branches(task.positions)[..., 1], limits.second.middle)
-    both = np.clip(both, limits.second.lower, limits.second.upper)
-    misses = one.each_target().miss(both, task.positions[:, None], limits.base)
-    return np.asarray(np.take_along_axis(both, np.argmin(misses, axis=-1)[..., None], axis=-1)[..., 0])
+    aims = Aims(task.positions, task.robot.joint_limits)
+    together = max(1, _TOGETHER // len(task.positions))
+    parts = []
+    for first in range(0, len(population.length), together):
+        some = slice(first, first + together)
+        part = population.take(some)
+        if theta2 is None:
+            descent = _Descent(task, aims, part, Postures.nearest(aims, part.kinematics))
+        else:
+            descent = _Descent(task, aims, part, Postures.at(aims, part.kinematics, theta2[some]))
+        parts.append(descent.after(iterations, keep_branches=theta2 is not None))
+    return Refined.joined(parts)
 
 
 def relative_weights(task: Task) -> FloatArray:
@@ -108,91 +107,88 @@ def relative_weights(task: Task) -> FloatArray:
     return np.asarray(weights / len(weights))
 
 
-def category_offsets(task: Task, frame: FloatArray, position: FloatArray) -> FloatArray:
-    """Return how far ends of the link are from the category asked for, shape (..., 2), m.
+class _Descent:
+    """Shapes on their way down, each with its postures."""
 
-    Args:
-        task: The task.
-        frame: Rotation of the link's end, shape (..., 3, 3).
-        position: The link's end in the base frame, shape (..., 3), m.
-    """
-    match task.topology:
-        case Topology.SCARA:
-            return np.asarray(_ARM_LENGTH * frame[..., :2, 0])
-        case Topology.SPHERICAL | Topology.PUMA:
-            height = 0.0 if task.topology is Topology.SPHERICAL else task.robot.d12
-            from_point = position - np.array([0.0, 0.0, height])
-            return np.asarray(np.einsum("...i,...ij->...j", from_point, frame[..., 1:]))
-        case Topology.ANY | Topology.GENERAL:
-            return np.zeros((*position.shape[:-1], 2))
+    def __init__(self, task: Task, aims: Aims, population: Population, postures: Postures) -> None:
+        self._task, self._aims, self._weights = task, aims, relative_weights(task)
+        self._population, self._postures = population, postures
+        self._damping = np.full(len(population.length), _FIRST_DAMPING)
+        self._exponent = _SQUARES
+
+    def after(self, iterations: int, *, keep_branches: bool) -> Refined:
+        """Return the shapes after so many steps."""
+        self._cost = self._cost_of(self._population, self._postures)
+        for iteration in range(iterations):
+            if self._task.objective is Objective.MINIMAX and iteration == iterations // _WORST_AFTER:
+                self._exponent = _NEARLY_WORST
+                self._cost = self._cost_of(self._population, self._postures)
+            self._step()
+            last = iteration == iterations - 1
+            if not (keep_branches or last) and (iteration + 1) % _STEPS_ON_BRANCHES == 0:
+                nearest = Postures.nearest(self._aims, self._population.kinematics)
+                self._postures = nearest.where(nearest.squared < self._postures.squared, self._postures)
+                self._cost = self._cost_of(self._population, self._postures)
+        return Refined(self._population, self._postures.joints, self._cost)
+
+    def _shares(self, postures: Postures) -> tuple[FloatArray, FloatArray]:
+        """Return the squared p-norm of the misses, (N,), and its derivatives by the squared misses, (N, n).
+
+        It is the mean over the targets of weighted misses to the power of the exponent p, to the power of
+        2 / p: the mean squared miss for p = 2, nearly the worst, and never above it, for a large p.
+        """
+        if self._exponent == _SQUARES:
+            return postures.squared @ self._weights, np.broadcast_to(self._weights, postures.squared.shape)
+        weights = len(self._weights) * self._weights
+        squared = postures.squared * weights
+        worst = squared.max(axis=1) + _TINY
+        half = 0.5 * self._exponent
+        relative = squared / worst[:, None]
+        mean = np.mean(relative**half, axis=1)
+        slopes = (mean ** (1.0 / half - 1.0))[:, None] * relative ** (half - 1.0) * self._weights
+        return worst * mean ** (1.0 / half), slopes
+
+    def _cost_of(self, population: Population, postures: Postures) -> FloatArray:
+        off = category_offsets(self._task, population)
+        return np.asarray(self._shares(postures)[0] + np.einsum("ni,ni->n", off, off))
+
+    def _step(self) -> None:
+        """Move each shape by a damped step if that makes it better."""
+        residuals = Residuals(self._population, self._postures, self._aims.limits.second)
+        curvature, slope = residuals.normal_equations(self._shares(self._postures)[1])
+        # A miss to a power of p is p - 1 times as curved as the square with the same slope.
+        curvature *= self._exponent - 1.0
+        by_end = category_slopes(self._task, self._population)
+        curvature[:, :6, :6] += by_end.transpose(0, 2, 1) @ by_end
+        off = category_offsets(self._task, self._population)
+        slope[:, :6] += np.einsum("nki,nk->ni", by_end, off)
+
+        robot, motion = self._population.robot, self._population.motion
+        by_unknowns = motion.transpose(0, 2, 1)
+        by_unknown = (by_unknowns @ slope[..., None])[..., 0]
+        step = _damped_step(self._population, by_unknowns @ curvature @ motion, by_unknown, self._damping)
+        moved = Population(robot, into_limits(robot, self._population.unknowns + step))
+        second = self._aims.limits.second
+        # By how much joint 2 follows is only known to first order; joint 1 is at its best in any case.
+        theta2 = self._postures.theta2 + residuals.following((motion @ step[..., None])[..., 0])
+        postures = Postures.at(self._aims, moved.kinematics, np.clip(theta2, second.lower, second.upper))
+        cost = self._cost_of(moved, postures)
+        better = cost < self._cost
+        self._population = moved.where(better, self._population)
+        self._postures = postures.where(better[:, None], self._postures)
+        self._cost = np.where(better, cost, self._cost)
+        self._damping = np.clip(
+            np.where(better, 0.2 * self._damping, 8.0 * self._damping), _LEAST_DAMPING, _MOST_DAMPING
+        )
 
 
-def with_theta1(task: Task, population: Population, theta2: FloatArray) -> FloatArray:
-    """Return joint angles, shape (N, n, 2), with joint 1 at its best for angles of joint 2, (N, n), rad."""
-    kinematics = population.kinematics.each_target()
-    theta1 = kinematics.best_theta1(theta2, task.positions, task.robot.joint_limits.base)
-    return np.stack([theta1, theta2], axis=-1)
-
-
-def _cost(task: Task, population: Population, joints: FloatArray, weights: FloatArray) -> FloatArray:
-    reached = population.kinematics.each_target().forward(joints[..., 0], joints[..., 1])
-    misses = np.einsum("...ni,...ni,n->...", reached - task.positions, reached - task.positions, weights)
-    return np.asarray(misses + np.sum(category_offsets(task, *population.end) ** 2, axis=-1))
-
-
-def _step(
-    task: Task, population: Population, joints: FloatArray, weights: FloatArray, damping: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return the damped step of the unknowns (N, p) and how far theta2 follows it (N, n)."""
-    kinematics = population.kinematics.each_target()
-    reached = kinematics.forward(joints[..., 0], joints[..., 1])
-    residual = reached - task.positions
-    count = population.unknowns.shape[-1]
-    nearby = Population(task.robot, population.unknowns[:, None] + _DIFFERENCE * np.eye(count))
-    moved = nearby.kinematics.each_target().forward(joints[:, None, :, 0], joints[:, None, :, 1])
-    jacobian = (moved - reached[:, None]) / _DIFFERENCE  # (N, p, n, 3)
-
-    # An orthonormal basis of the directions in which the joints are free to move P5.
-    limits = task.robot.joint_limits
-    by_theta1, by_theta2 = kinematics.velocities(joints, reached)
-    first = _unit(by_theta1) * _free(joints[..., 0], limits.base, by_theta1, residual)[..., None]
-    second = by_theta2 - np.einsum("...i,...i", by_theta2, first)[..., None] * first
-    free = _free(joints[..., 1], limits.second, by_theta2, residual)
-    second = _unit(second) * free[..., None]
-    across, along = residual, []
-    for direction in (first, second):
-        across = across - np.einsum("...i,...i", across, direction)[..., None] * direction
-        along.append(np.einsum("apni,ani->apn", jacobian, direction))
-    projected = jacobian - along[0][..., None] * first[:, None] - along[1][..., None] * second[:, None]
-
-    normal = np.einsum("apni,aqni,n->apq", projected, projected, weights)
-    slope = np.einsum("apni,ani,n->ap", projected, across, weights)
-    offsets = category_offsets(task, *population.end)
-    by_offset = (category_offsets(task, *nearby.end) - offsets[:, None]) / _DIFFERENCE
-    normal += np.einsum("apk,aqk->apq", by_offset, by_offset)
-    slope += np.einsum("apk,ak->ap", by_offset, offsets)
-    diagonal = np.einsum("app->ap", normal)
+def _damped_step(
+    population: Population, curvature: FloatArray, slope: FloatArray, damping: FloatArray
+) -> FloatArray:
+    """Return the Gauss-Newton steps of the unknowns that their limits allow, shape (N, unknowns)."""
+    free, unit = free_directions(population, slope), np.eye(slope.shape[1])
+    diagonal = np.einsum("npp->np", curvature)
     # The floor of the scale keeps unknowns that nothing depends on from running away.
     scale = diagonal + 1e-3 * diagonal.max(axis=1, keepdims=True) + 1e-12
-    damped = normal + damping[:, None, None] * scale[:, :, None] * np.eye(count)
-    step = -np.linalg.solve(damped, slope[..., None])[..., 0]
-
-    # theta2 takes up what the step and the residual leave along its own direction.
-    to_take_up = residual + np.einsum("apni,ap->ani", jacobian, step)
-    length = np.einsum("...i,...i", second, by_theta2)
-    follow = -np.einsum("...i,...i", to_take_up, second) / np.maximum(length, 1e-6)
-    return step, np.clip(follow, -0.5, 0.5)
-
-
-def _unit(vectors: FloatArray) -> FloatArray:
-    """Return vectors of length one; zero vectors stay zero."""
-    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9))
-
-
-def _free(angle: FloatArray, limits: Interval, velocity: FloatArray, residual: FloatArray) -> FloatArray:
-    """Return 1 where a joint may move so as to lessen the residual, 0 where its limit forbids it."""
-    uphill = np.einsum("...i,...i", velocity, residual)
-    held = ((angle <= limits.lower + 1e-9) & (uphill > 0.0)) | (
-        (angle >= limits.upper - 1e-9) & (uphill < 0.0)
-    )
-    return np.where(held, 0.0, 1.0)
+    damped = free @ (curvature + (damping[:, None] * scale)[:, :, None] * unit) @ free + unit - free
+    return np.asarray(-np.linalg.solve(damped, free @ slope[..., None])[..., 0])

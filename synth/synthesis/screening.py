@@ -6,7 +6,6 @@ finds it nearly always, and looking at a shape is ten thousand times cheaper tha
 
 from __future__ import annotations
 
-import itertools
 from collections import Counter
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -14,75 +13,83 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.robot import Arm, into_turn
+from synth.synthesis.category_offsets import category_offsets
 from synth.synthesis.exact_starts import exact_designs, nearest_to_designs
-from synth.synthesis.hopping import hopped
-from synth.synthesis.population import Population, into_limits
-from synth.synthesis.refinement import Refined, category_offsets, refine, relative_weights, with_theta1
-from synth.synthesis.separation import overlaps
+from synth.synthesis.population import Population
+from synth.synthesis.refinement import relative_weights
+from synth.synthesis.valleys import Valleys
+from synth.task import Objective
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
-    from synth.geometry import Invariants
-    from synth.robot import Robot
+    from synth.robot import Arm, Robot
+    from synth.synthesis.refinement import Refined
     from synth.task import Task
 
 _MOST_TARGETS = 40
-# How many shapes are drawn, looked at with the joint limits, and refined: most tasks are found in the
-# first step, which takes a tenth of the second one's time.
-_STEPS = ((20_000, 1_000, 200), (200_000, 4_000, 400))
-_STARTS_PER_STEP, _STARTS_AFTER_HOPS = 12, 6
+# Shapes drawn that are looked at; of these the ones refined, half of them the best, half at random from so
+# many of the best; and from how many of the best fresh ones are drawn.
+_SHAPES, _REFINED, _GOOD, _FRESH = 20_000, 200, 4_000, 10_000
 _PER_DESIGN = 6  # shapes looked at near each exact design, where there are any
 # Misses are only compared up to here, m: beyond, a shape is far off and by how much says little.
 _FAR = 0.3
 # Misses below this, m, are as good as none for a start: the refinement sees to them.
 _NEAR = 3e-3
-# Starts whose link ends are nearer than this, m, count as one, an axis 1 rad apart for _ARM_LENGTH.
-_DISTINCT = 0.03
+# Starts whose link ends are nearer than this, m, count as one, an axis 1 rad apart for _ARM_LENGTH, unless
+# the later one is better by more than this part.
+_DISTINCT, _BETTER = 0.03, 0.01
 _ARM_LENGTH = 0.5
-_ALIKE, _OF_A_KIND = 2e-3, 2  # starts whose mean squared misses differ by less than this part
+# Starts whose mean squared misses differ by less than this part are of a kind: so many are enough.
+_ALIKE, _OF_A_KIND = 2e-3, {Objective.LEAST_SQUARES: 2, Objective.MINIMAX: 6}
 # Mean squared misses below this, m^2, are all as good: then the gentler bend goes first.
 _SETTLED = 1e-8
-# The search over branches: rounds, shapes kept, children of each, and how many targets a child swaps on
-# average. It ends where the mean squared miss is below _EXACT, m^2.
-_SWAP_ROUNDS, _PARENTS, _CHILDREN = 12, 10, 20
-_SWAPPED_TARGETS = (1, 2, 4, np.inf)
-_EXACT = 1e-14
-# The search around obstacles: rounds, children of each shape, how far they are bent at most (in the unknowns'
-# own units), and how many clear shapes end it.
-_WANDER_ROUNDS, _WANDER_CHILDREN, _WANDER, _CLEAR_ENOUGH = 12, 5, 0.3, 12
-_SHEET = 0.04  # a branch that misses by more than this, m, is no other sheet of the same surface
+# Of each step; where the worst miss counts, the mean squared one says less of a start.
+_MOST_STARTS = {Objective.LEAST_SQUARES: 12, Objective.MINIMAX: 24}
 
 
 @dataclass(frozen=True)
 class Start:
-    """A shape to polish: the robot in it, and the joint angles that come closest to the targets."""
+    """A shape to polish.
+
+    Attributes:
+        arm: The robot in it.
+        joints: The joint angles that come closest to the targets, shape (n, 2), rad.
+        cost: Its mean squared miss, weighted with `relative_weights`, m^2: where it is settled, about the
+            least in its valley, whatever else it has to keep clear of.
+        agreed: Whether the best valley so far is known so well that there hardly is a better one.
+    """
 
     arm: Arm
     joints: FloatArray
+    cost: float = 0.0
+    agreed: bool = False
 
 
-def starts(task: Task, seed: int, *, quick: bool = False) -> Iterator[Start]:
+def starts(
+    task: Task, seed: int, *, quick: bool = False, stop: Callable[[], bool] = lambda: False
+) -> Iterator[Start]:
     """Yield distinct start points, the most promising first.
 
     Args:
         task: The task.
         seed: Seed of the random shapes.
         quick: Whether to end with what the first, small step finds.
+        stop: Asked now and then; when it says yes, no more is searched for.
 
     Yields:
         Start points; none where no random shape respects the limits and the floor.
     """
     rng = np.random.default_rng([seed, 1])
-    for start in _starts(_fewer_targets(task, rng), seed, rng, quick=quick):
-        joints = start.joints
-        if len(joints) < len(task.targets):
-            joints, _ = start.arm.closest_joints(task.table.positions)
-        yield Start(start.arm, joints)
+    for start in _starts(_fewer_targets(task, rng), seed, rng, stop, quick=quick):
+        if len(start.joints) == len(task.targets):
+            yield start
+        else:
+            joints, misses = start.arm.closest_joints(task.table.positions)
+            yield replace(start, joints=joints, cost=float(relative_weights(task) @ misses**2))
 
 
 def _fewer_targets(task: Task, rng: np.random.Generator) -> Task:
@@ -94,151 +101,76 @@ def _fewer_targets(task: Task, rng: np.random.Generator) -> Task:
 
 
 @lru_cache(maxsize=4)
-def _small_population(robot: Robot, floor: float | None, seed: int) -> Population:
-    """Return the shapes of the first step, the same for all tasks of a robot, a floor and a seed.
+def _shapes(robot: Robot, floor: float | None, seed: int) -> Population:
+    """Return random shapes whose links end above the floor, the same for all tasks of a seed.
 
     They keep where they end, which takes a few megabytes; the next task need not ask again.
     """
-    return _population(robot, floor, _STEPS[0][0], np.random.default_rng([seed, 0]))
-
-
-def _population(robot: Robot, floor: float | None, size: int, rng: np.random.Generator) -> Population:
-    """Return random shapes whose links end above the floor."""
-    population = Population.sample(robot, size, rng)
+    population = Population.sample(robot, _SHAPES, np.random.default_rng([seed, 0]))
     return population if floor is None else population.take(population.end[1][:, 2] > floor)
 
 
-def _starts(task: Task, seed: int, rng: np.random.Generator, *, quick: bool) -> Iterator[Start]:
+def _starts(
+    task: Task, seed: int, rng: np.random.Generator, stop: Callable[[], bool], *, quick: bool
+) -> Iterator[Start]:
     """Yield start points for a task of few targets, each step with more effort than the one before."""
-    designs, after_hops = exact_designs(task) or (), None
-    for size, shortlist, count in _STEPS:
-        if size == _STEPS[0][0]:
-            population = _small_population(task.robot, task.floor, seed)
-        else:
-            population = _population(task.robot, task.floor, size, rng)
-        if not len(population.length):
-            return
-        cost = _costs(task, estimated_misses(task, population)) + _category_cost(task, population)
-        population = population.take(_promising(population, cost, shortlist, designs))
-        theta2, misses = limited_misses(task, population)
-        cost = _costs(task, misses) + _category_cost(task, population)
-        if task.obstacles:
-            cost += _overlap_cost(task, population, with_theta1(task, population, theta2.T))
-        best = _promising(population, cost, count, designs)
-        refined = refine(task, population.take(best), theta2[:, best].T)
-        if task.obstacles:
-            refined = _wandered_clear(task, refined, rng)
-        yield from itertools.islice(_distinct(task, refined), _STARTS_PER_STEP)
-        if quick:
-            return
-        # The second step does not begin anew: what was hopped to from the first one goes into its hops.
-        after_hops = hopped(task, refined if after_hops is None else refined.improved_by(after_hops), rng)
-        yield from itertools.islice(_distinct(task, after_hops), _STARTS_AFTER_HOPS)
-    if after_hops is not None:
-        yield from _distinct(task, _with_branches_swapped(task, after_hops, rng))
+    shapes = _shapes(task.robot, task.floor, seed)
+    if not len(shapes.length):
+        return
+    cost = _costs(task, estimated_misses(task, shapes)) + _category_cost(task, shapes)
+    # Among near misses the gentle bends come first: the refinement sees to the rest.
+    order = np.lexsort([shapes.bending, np.maximum(cost, _NEAR**2)])
+
+    def drawn(count: int, most: int) -> NDArray[np.intp]:
+        return rng.choice(order[:most], min(count, most, len(order)), replace=False)
+
+    first = np.union1d(order[: _REFINED // 2], drawn(_REFINED // 2, _GOOD))
+    if designs := exact_designs(task):
+        first = np.union1d(first, nearest_to_designs(shapes, designs, _PER_DESIGN))
+    valleys, distinct = Valleys.of(task, shapes.take(first)), _Distinct(task)
+    yield from distinct.of(valleys.best, agreed=valleys.agreed)
+    if not quick:
+        valleys = valleys.explored(task, lambda: shapes.take(drawn(_REFINED, _FRESH)), rng, stop)
+        yield from distinct.of(valleys.best, agreed=True)
 
 
-def _promising(
-    population: Population, cost: FloatArray, count: int, designs: Sequence[Invariants]
-) -> NDArray[np.intp]:
-    """Return which shapes to look at closer: `count` by their misses, and those nearest to exact designs.
-
-    Among near misses the gentle bends come first: the refinement sees to the rest.
-    """
-    best = np.lexsort([population.bending, np.maximum(cost, _NEAR**2)])[:count]
-    return np.union1d(best, nearest_to_designs(population, designs, _PER_DESIGN)) if designs else best
-
-
-def _distinct(task: Task, refined: Refined) -> Iterator[Start]:
-    """Yield starts in the order of their misses, those aside that are nearly one yielded before."""
-    population = refined.population
-    frame, position = population.end
-    cost = np.maximum(refined.cost, _SETTLED)
-    if task.obstacles:
-        cost = cost + _overlap_cost(task, population, refined.joints)
-    # Shapes that miss alike are mostly one surface, bent in several ways.
-    kinds, often = np.round(np.log(cost) / _ALIKE), Counter[float]()
-    poses = np.hstack([position, _ARM_LENGTH * frame[:, :, 0]])
-    taken = np.empty((0, poses.shape[1]))
-    for index in np.lexsort([population.bending, cost]):
-        kind, settled = float(kinds[index]), cost[index] <= _SETTLED
-        if (settled or often[kind] < _OF_A_KIND) and np.all(
-            np.linalg.norm(taken - poses[index], axis=1) > _DISTINCT
-        ):
-            often[kind] += 1
-            taken = np.vstack([taken, poses[index]])
-            yield Start(population.arm(index, task.base), refined.joints[index])
-
-
-def _wandered_clear(task: Task, refined: Refined, rng: np.random.Generator) -> Refined:
-    """Return shapes after a search for links that reach around the obstacles.
-
-    Many bends of the link give one surface. So the best shapes are bent a little at random and led back to
-    the targets, the best of both again, and so on; the nonlinear program knows which way obstacles lie,
-    but only this finds the other side of one.
-    """
-    total = refined.cost + _overlap_cost(task, refined.population, refined.joints)
-    for _ in range(_WANDER_ROUNDS):
-        if np.count_nonzero(total < _SETTLED) >= _CLEAR_ENOUGH:
-            break
-        order = np.argsort(total, kind="stable")
-        parents = np.resize(order[: len(order) // _WANDER_CHILDREN], len(order))
-        x = refined.population.unknowns[parents]
-        x = into_limits(task.robot, x + rng.uniform(0.0, _WANDER) * rng.normal(size=x.shape))
-        children = refine(task, Population(task.robot, x), refined.joints[parents, :, 1])
-        child_total = children.cost + _overlap_cost(task, children.population, children.joints)
-        best = np.argsort(np.concatenate([total, child_total]), kind="stable")[: len(total)]
-        refined = refined.chosen_with(children, best)
-        total = np.concatenate([total, child_total])[best]
-    return refined
-
-
-def _with_branches_swapped(task: Task, refined: Refined, rng: np.random.Generator) -> Refined:
-    """Return the best shapes after a search over which target takes which branch of joint 2.
-
-    Where the axes nearly meet or are nearly parallel, the workspace has two sheets a few millimetres
-    apart, and no local step moves a target from one to the other. So the best shapes are tried with some
-    targets on their other branch, the best of these again, and so on.
+class _Distinct:
+    """Start points that differ from those before.
 
     Args:
         task: The task.
-        refined: Shapes at the bottoms of their valleys.
-        rng: Source of randomness.
     """
-    for _ in range(_SWAP_ROUNDS):
-        swapped = _swapped_once(task, refined, rng)
-        if swapped is None or refined.cost.min() < _EXACT:
-            break
-        refined = refined.improved_by(refine(task, *swapped))
-    return refined
 
+    def __init__(self, task: Task) -> None:
+        self._task = task
+        self._poses, self._costs = np.empty((0, 6)), np.empty(0)
+        self._kinds = Counter[float]()
 
-def _swapped_once(
-    task: Task, refined: Refined, rng: np.random.Generator
-) -> tuple[Population, FloatArray] | None:
-    """Return the best shapes many times over, some targets moved to their other branch.
-
-    Returns:
-        Shapes, of shape (N,), and the angles of joint 2 to refine them from, shape (N, n), rad; None if
-        no target has another branch nearby.
-    """
-    # Shapes that miss alike are mostly one surface, bent in several ways: two of a kind are enough.
-    order = np.argsort(refined.cost, kind="stable")
-    kinds = np.round(np.log(refined.cost[order] + _EXACT), 2)
-    best = order[[np.sum(kinds[:place] == kind) < 2 for place, kind in enumerate(kinds)]][:_PARENTS]
-    population, theta2 = refined.population.take(best), refined.joints[best, :, 1]
-    limits, kinematics = task.robot.joint_limits, population.kinematics.each_target()
-    both = into_turn(kinematics.branches(task.positions)[..., 1], limits.second.middle)
-    other = np.argmax(np.abs(both - theta2[..., None]), axis=-1)
-    swapped = np.take_along_axis(both, other[..., None], axis=-1)[..., 0]
-    swapped = np.clip(swapped, limits.second.lower, limits.second.upper)
-    near = kinematics.miss(swapped, task.positions, limits.base) < _SHEET
-    if not near.any():
-        return None
-    copies = np.repeat(np.arange(len(best)), _CHILDREN)
-    chance = np.minimum(rng.choice(_SWAPPED_TARGETS, len(copies)) / len(task.targets), 1.0)
-    swap = near[copies] & (rng.uniform(size=(len(copies), len(task.targets))) < chance[:, None])
-    return population.take(copies), np.where(swap, swapped[copies], theta2[copies])
+    def of(self, refined: Refined, *, agreed: bool) -> Iterator[Start]:
+        """Yield starts in the order of their costs, m^2, those aside that are nearly one yielded before."""
+        population, base, yielded = refined.population, self._task.base, 0
+        frame, position = population.end
+        poses = np.hstack([position, _ARM_LENGTH * frame[:, :, 0]])
+        cost = np.maximum(refined.cost, _SETTLED)
+        # Shapes that miss alike are mostly one surface, bent in several ways.
+        kinds = np.round(np.log(cost) / _ALIKE)
+        for index in np.lexsort([population.bending, cost]):
+            kind, settled = float(kinds[index]), cost[index] <= _SETTLED
+            near = np.linalg.norm(self._poses - poses[index], axis=1) < _DISTINCT
+            no_better = cost[index] >= (1.0 - _BETTER) * self._costs
+            if np.any(near & no_better) or (
+                not settled and self._kinds[kind] >= _OF_A_KIND[self._task.objective]
+            ):
+                continue
+            self._kinds[kind] += 1
+            self._poses = np.vstack([self._poses, poses[index]])
+            self._costs = np.append(self._costs, cost[index])
+            yield Start(
+                population.arm(index, base), refined.joints[index], float(refined.cost[index]), agreed
+            )
+            yielded += 1
+            if yielded == _MOST_STARTS[self._task.objective]:
+                return
 
 
 def estimated_misses(task: Task, population: Population) -> FloatArray:
@@ -277,31 +209,6 @@ def estimated_misses(task: Task, population: Population) -> FloatArray:
     return misses
 
 
-def limited_misses(task: Task, population: Population) -> tuple[FloatArray, FloatArray]:
-    """Return about how far P5 stays from each target within the joint limits; for a short list.
-
-    Args:
-        task: The task.
-        population: The shapes.
-
-    Returns:
-        The better of both branches of joint 2, moved into its limits, and its miss, each of shape
-        (n, N), rad and m.
-    """
-    limits = task.robot.joint_limits
-    kinematics = population.kinematics
-    branches = kinematics.each_target()
-    angles, misses = [], []
-    for position in task.positions:
-        theta2 = into_turn(kinematics.branches(position)[..., 1], limits.second.middle)
-        theta2 = np.clip(theta2, limits.second.lower, limits.second.upper)
-        miss = branches.miss(theta2, position, limits.base)
-        better = np.argmin(miss, axis=-1)[:, None]
-        angles.append(np.take_along_axis(theta2, better, axis=-1)[:, 0])
-        misses.append(np.take_along_axis(miss, better, axis=-1)[:, 0])
-    return np.array(angles), np.array(misses)
-
-
 def _costs(task: Task, misses: FloatArray) -> FloatArray:
     """Return the mean squared misses, weighted, m^2, for misses of shape (n, N)."""
     return np.asarray(relative_weights(task) @ np.minimum(misses, _FAR) ** 2)
@@ -309,9 +216,4 @@ def _costs(task: Task, misses: FloatArray) -> FloatArray:
 
 def _category_cost(task: Task, population: Population) -> FloatArray:
     """Return the squared distance from the category that the task asks for, m^2."""
-    return np.asarray(np.sum(category_offsets(task, *population.end) ** 2, axis=-1))
-
-
-def _overlap_cost(task: Task, population: Population, joints: FloatArray) -> FloatArray:
-    """Return the mean squared depth in obstacles, m^2, for joint angles of shape (N, n, 2)."""
-    return np.asarray(np.mean(overlaps(task, population, joints) ** 2, axis=-1))
+    return np.asarray(np.sum(category_offsets(task, population) ** 2, axis=-1))

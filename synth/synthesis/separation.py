@@ -80,7 +80,7 @@ def separations(task: Task, arm: Arm, joints: FloatArray, *, itself: bool) -> tu
 
 
 def overlaps(task: Task, population: Population, joints: FloatArray) -> FloatArray:
-    """Return how deep shapes are inside obstacles at joint angles, at samples of tube and rod.
+    """Return how deep shapes are inside obstacles and inside themselves, at samples of tube and rod.
 
     Args:
         task: The task with its obstacles.
@@ -90,20 +90,49 @@ def overlaps(task: Task, population: Population, joints: FloatArray) -> FloatArr
     Returns:
         The largest depth of each shape at each target, shape (N, n), m; 0 where it is clear.
     """
-    depth = np.zeros(joints.shape[:-1])
-    robot = task.robot
-    tube = population.centreline
-    tip = population.kinematics.each_target().forward(0.0, joints[..., 1])
+    robot, tube = task.robot, population.centreline
+    radii = 0.5 * robot.link.diameter, 0.5 * robot.rigid_link.diameter
+    end = tube[:, None, -1]
+    rod = population.kinematics.each_target().forward(0.0, joints[..., 1]) - end
+    depth = np.maximum(*_self_overlaps(population, end, rod))
+    if not task.solids:
+        return depth
     share = np.linspace(0.0, 1.0, _ROD_SAMPLES)[:, None]
-    rod = tube[:, None, -1:] + share * (tip[..., None, :] - tube[:, None, -1:])
-    for points, radius in (
-        (np.broadcast_to(tube[:, None], (*depth.shape, *tube.shape[1:])), 0.5 * robot.link.diameter),
-        (rod, 0.5 * robot.rigid_link.diameter),
+    for points, radius in zip(
+        (tube[:, None], end[..., None, :] + share * rod[..., None, :]), radii, strict=True
     ):
-        there = turned(points, joints[..., 0, None])
+        there = turned(np.broadcast_to(points, (*depth.shape, *points.shape[2:])), joints[..., 0, None])
         for solid in task.solids:
             depth = np.maximum(depth, radius - solid.distance(there).min(axis=-1))
     return depth
+
+
+def _self_overlaps(population: Population, end: FloatArray, rod: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return how deep the tube is inside itself, shape (N, 1), and the rod in the tube, shape (N, n), m.
+
+    Args:
+        population: The shapes, of shape (N,).
+        end: Ends of their links, shape (N, 1, 3), m.
+        rod: From there to P5 at each target, shape (N, n, 3), m.
+    """
+    robot, nodes = population.robot, population.centreline
+    # Between the ends of the pieces, the middles of their chords serve, too.
+    tube = np.concatenate([nodes, 0.5 * (nodes[:, 1:] + nodes[:, :-1])], axis=1)
+    share = np.arange(1.0, nodes.shape[1] + 1.0) / nodes.shape[1]
+    along = np.concatenate([share, 0.5 * (share[1:] + share[:-1])]) * population.length[:, None]
+    thickness = robot.link.diameter
+    # What is nearer along the tube is its neighbourhood, or the joint (see `ArmBody`).
+    apart = np.linalg.norm(tube[:, :, None] - tube[:, None], axis=-1)
+    neighbours = np.abs(along[:, :, None] - along[:, None]) < np.pi * robot.link.min_bend_radius
+    of_tube = thickness - np.where(neighbours, np.inf, apart).min(axis=(1, 2))
+    length = np.linalg.norm(rod, axis=-1, keepdims=True)
+    from_end = tube - end
+    reached = np.clip(from_end @ np.swapaxes(rod / length, 1, 2), thickness, np.swapaxes(length, 1, 2))
+    off = from_end[:, :, None] - reached[..., None] * (rod / length)[:, None]
+    joint = along > population.length[:, None] - thickness
+    apart = np.where(joint[..., None], np.inf, np.linalg.norm(off, axis=-1))
+    of_rod = 0.5 * (thickness + robot.rigid_link.diameter) - apart.min(axis=1)
+    return np.maximum(of_tube, 0.0)[:, None], np.maximum(of_rod, 0.0)
 
 
 def _from_obstacles(task: Task, arm: Arm, joints: FloatArray) -> Iterator[Separation]:

@@ -38,7 +38,8 @@ if TYPE_CHECKING:
 _STARTS_AT_MOST = 48
 _STARTS_WHEN_IMPOSSIBLE = 12  # for a good best effort
 _FOLLOWED = 2  # shapes of a neighbour that are polished
-_STARTS_AFTER_FOUND = 6  # for distinct, gentler and nearer alternatives
+_STARTS_AFTER_FOUND = 4  # for distinct, gentler and nearer alternatives
+_STARTS_NO_BETTER = 2  # likewise, of shapes that miss a target
 _ALTERNATIVES = 8
 _PROOF_TIME = 60.0  # s
 # Shapes whose objective is above this multiple of the best one's are no alternatives to it.
@@ -199,7 +200,8 @@ class _Search:
     def run(self, most: int | None = None) -> None:
         """Polish start points until enough is found, or the time is up; if `most`, quick ones, so many."""
         self.starts_at_most = self.starts + (most or self._usual_starts)
-        for start in self._start_points(quick=most is not None):
+        no_better = 0
+        for start in self._start_points(quick=most is not None or bool(self._impossible)):
             if self._out_of_time():
                 # A start that was not polished is better than nothing.
                 if not self.designs:
@@ -207,12 +209,34 @@ class _Search:
                 if self.designs or len(self.blocked) >= _STARTS_WHEN_IMPOSSIBLE:
                     return
                 continue
+            if not self._may_be_better(start):
+                no_better += 1
+                if no_better > _STARTS_NO_BETTER:
+                    if start.agreed:
+                        return
+                    continue
             self._polish(start)
+            if self._led_astray(start) and self._keep(start.arm, start.joints).verification.possible:
+                self._polish(start, near=True)
             self.starts += 1
             self.starts_found += self._found()
             self._report()
             if self.starts >= self.starts_at_most or self.starts_found > _STARTS_AFTER_FOUND:
                 return
+
+    def _may_be_better(self, start: Start) -> bool:
+        """Whether a start may lead to a better shape than the best: not if its valley is above that."""
+        if not self.designs or self._found():
+            return True
+        least = start.cost / float(self.part.tolerances.min()) ** 2  # in the mean, so also of the worst
+        if self.part.objective is Objective.LEAST_SQUARES:
+            least *= len(self.part.targets)
+        return least < min(_rank(self.part, design)[1] for design in self.designs)
+
+    def _led_astray(self, start: Start) -> bool:
+        """Whether polishing may have led away from a start that is nearly an answer, by long first steps."""
+        sum_of_squares = self.part.objective is Objective.LEAST_SQUARES
+        return sum_of_squares and not self._found() and self._may_be_better(start)
 
     def prove(self) -> None:
         """Bound how little any shape can miss, unless the search was stopped already."""
@@ -264,7 +288,7 @@ class _Search:
         return _STARTS_WHEN_IMPOSSIBLE if self._impossible else _STARTS_AT_MOST
 
     def _start_points(self, *, quick: bool) -> Iterator[Start]:
-        candidates = starts(self.part, self.seed, quick=quick)
+        candidates = starts(self.part, self.seed, quick=quick, stop=self._out_of_time)
         while True:
             with self.clock.on("screening"):
                 start = next(candidates, None)
@@ -310,7 +334,9 @@ class _Search:
             arm, joints = answer.arm, answer.joints
             design = self._keep(arm, joints)
             clashes = [v for v in design.verification.violations if v.limit.startswith(_CLASHES)]
-            itself = itself or any(clash.limit == "itself" for clash in clashes)
+            if not itself and any(clash.limit == "itself" for clash in clashes):
+                # The start kept clearer of itself than where the way from there led without planes.
+                arm, joints, itself = start.arm, start.joints, True
             # Other planes may give way: as long as they do, or as something is in the way.
             objective = _rank(self.part, design)[1]
             done = not planes or objective > _GAINED * best or design.verification.found

@@ -1,0 +1,159 @@
+"""Postures of many shapes at many targets: P5 beside each target, joint 1 always at its best.
+
+Only joint 2 is chosen; joint 1 then turns P5 into the half-plane of the target, or up to its limit. So a
+posture is described where joint 1 stands at zero, the target turned back, and vectors have their components
+along P5's own directions (outward from axis 1, around it, up), on the first axis of the arrays: those are
+long, and their components are needed one by one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.robot import into_turn
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from synth.arrays import FloatArray
+    from synth.robot import JointLimits, Kinematics
+
+_NEWTON_STEPS = 2
+_FARTHEST_STEP = 0.3  # rad
+_TINY = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class Aims:
+    """Targets as joint 1 sees them, and the limits of the joints.
+
+    Attributes:
+        positions: Targets in the base frame, shape (n, 3), m.
+        limits: Limits of both joints.
+    """
+
+    positions: FloatArray
+    limits: JointLimits
+
+    @cached_property
+    def radial(self) -> FloatArray:
+        """Distances from axis 1, shape (n,), m."""
+        return np.hypot(self.positions[:, 0], self.positions[:, 1])
+
+    @cached_property
+    def azimuth(self) -> FloatArray:
+        """Angles about axis 1, shape (n,), rad."""
+        return np.arctan2(self.positions[:, 1], self.positions[:, 0])
+
+
+@dataclass(frozen=True, eq=False)
+class Postures:
+    """P5 of N shapes beside n targets each.
+
+    Attributes:
+        theta2: Angles of joint 2, shape (N, n), rad.
+        theta1: Angles of joint 1, shape (N, n), rad.
+        beyond: How much farther joint 1 would have to turn than its limits allow, shape (N, n), rad.
+        outward: Direction from axis 1 to P5, where joint 1 stands at zero: its x and y, shape (2, N, n).
+        point: P5 where joint 1 stands at zero, shape (3, N, n), m.
+        miss: P5 - target, outward, around and up, shape (3, N, n), m.
+        tangent: dP5/dtheta2, outward, around and up, shape (3, N, n), m.
+    """
+
+    theta2: FloatArray
+    theta1: FloatArray
+    beyond: FloatArray
+    outward: FloatArray
+    point: FloatArray
+    miss: FloatArray
+    tangent: FloatArray
+
+    @classmethod
+    def at(cls, aims: Aims, kinematics: Kinematics, theta2: FloatArray) -> Postures:
+        """Return the postures at angles of joint 2, shape (N, n), rad.
+
+        Args:
+            aims: The targets.
+            kinematics: The joints of the shapes, of shape (N,).
+            theta2: The angles.
+        """
+        centre = kinematics.centre.T[..., None]
+        v, t = kinematics.frame[..., 1].T[..., None], kinematics.frame[..., 2].T[..., None]
+        sin, cos = (kinematics.radius[:, None] * of(theta2) for of in (np.sin, np.cos))
+        point = centre + sin * v - cos * t
+        along = cos * v + sin * t
+        radial = np.hypot(point[0], point[1]) + _TINY
+        outward = point[:2] / radial
+        wanted = into_turn(aims.azimuth - np.arctan2(point[1], point[0]), aims.limits.base.middle)
+        theta1 = np.clip(wanted, aims.limits.base.lower, aims.limits.base.upper)
+        beyond = wanted - theta1
+        x, y = outward
+        miss = np.stack(
+            [
+                radial - aims.radial * np.cos(beyond),
+                -aims.radial * np.sin(beyond),
+                point[2] - aims.positions[:, 2],
+            ]
+        )
+        tangent = np.stack([x * along[0] + y * along[1], x * along[1] - y * along[0], along[2]])
+        return cls(theta2, theta1, beyond, outward, point, miss, tangent)
+
+    @classmethod
+    def nearest(cls, aims: Aims, kinematics: Kinematics) -> Postures:
+        """Return the postures nearest to the targets within the limits of the joints.
+
+        Off the workspace the branches of the inverse kinematics are near its closest points; a few steps
+        lead there, and the nearer of both is taken.
+
+        Args:
+            aims: The targets.
+            kinematics: The joints of the shapes, of shape (N,).
+        """
+        second = aims.limits.second
+        branches = kinematics.each_target().branches(aims.positions)[..., 1]
+        both = [cls._led(aims, kinematics, into_turn(branches[..., i], second.middle)) for i in range(2)]
+        return both[0].where(both[0].squared <= both[1].squared, both[1])
+
+    @classmethod
+    def _led(cls, aims: Aims, kinematics: Kinematics, theta2: FloatArray) -> Postures:
+        """Return postures after a few Gauss-Newton steps of joint 2, joint 1 always at its best."""
+        second = aims.limits.second
+        here = cls.at(aims, kinematics, np.clip(theta2, second.lower, second.upper))
+        for _ in range(_NEWTON_STEPS):
+            along, speed = here.free_tangent
+            step = -dot(along, here.miss) / np.maximum(speed, _TINY)
+            theta2 = here.theta2 + np.clip(step, -_FARTHEST_STEP, _FARTHEST_STEP)
+            here = cls.at(aims, kinematics, np.clip(theta2, second.lower, second.upper))
+        return here
+
+    @cached_property
+    def squared(self) -> FloatArray:
+        """Squared misses, shape (N, n), m^2."""
+        return dot(self.miss, self.miss)
+
+    @cached_property
+    def free_tangent(self) -> tuple[FloatArray, FloatArray]:
+        """The direction in which joint 2 moves P5, joint 1 following if it may, and how fast, m / rad."""
+        around = np.where(self.beyond == 0.0, 0.0, self.tangent[1])
+        tangent = np.stack([self.tangent[0], around, self.tangent[2]])
+        speed = np.sqrt(dot(tangent, tangent))
+        return tangent / np.maximum(speed, _TINY), speed
+
+    @property
+    def joints(self) -> FloatArray:
+        """Angles (theta1, theta2), shape (N, n, 2), rad."""
+        return np.stack([self.theta1, self.theta2], axis=-1)
+
+    def where(self, mine: NDArray[np.bool_], other: Postures) -> Postures:
+        """Return these postures where a mask says so and others elsewhere; shape (N, n) or (N, 1)."""
+        arrays = ((getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
+        return Postures(*(np.where(mine, one, two) for one, two in arrays))
+
+
+def dot(one: FloatArray, two: FloatArray) -> FloatArray:
+    """Return scalar products of vectors with their components on the first axis."""
+    return np.asarray(one[0] * two[0] + one[1] * two[1] + one[2] * two[2])

@@ -1,0 +1,144 @@
+"""The valleys of the objective, where no shape meets all targets: which of them is the lowest?
+
+There is about one valley for each way in which the targets may lie on the near or the far side of the
+surface. Three kinds of steps lead from those known to others, in turn:
+
+* bending the best shapes a little at random: most valleys are beside a better one;
+* giving a few targets of the best shapes another angle of joint 2: where the workspace has two sheets
+  close together, no small step moves a target from one to the other;
+* fresh shapes that know nothing of the others: they find what is far from all of these.
+
+Fresh starts also tell when it is enough. If many of them end in the same best valley, there hardly is a
+better one that is so narrow that all of them missed it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.synthesis.population import ARCS, Population, into_limits
+from synth.synthesis.refinement import Refined, refine
+from synth.synthesis.separation import overlaps
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from synth.arrays import FloatArray
+    from synth.task import Task
+
+# Steps of each kind, shapes kept of those that miss differently, and children of each.
+_ROUNDS, _PARENTS, _CHILDREN = 10, 20, 10
+_KEPT = 400
+# Sizes of the bends, in units of the largest curvature; lengths change by a twentieth of that, m.
+_SIZES, _LENGTHS = (0.03, 0.1, 0.3), 0.05
+_MOST_SWAPPED = 2  # targets that get another angle of joint 2
+# Iterations: of bent shapes; of swapped ones, at first on the branches they were given; of fresh ones, the
+# best quarter of which goes on.
+_BENT, _SWAPPED, _FRESH = 10, (4, 8), (5, 15)
+_GO_ON = 4
+# So many shapes with mean squared misses below this, m^2, end the search, of those with obstacles;
+# those that differ by less than this part are alike.
+_ENOUGH, _EXACT, _ALIKE = 5, 1e-10, 0.01
+# Such a share of the fresh starts must end within this part of the least mean squared miss.
+_AGREEING, _SAME = 0.05, 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Valleys:
+    """What is known of the valleys of a task.
+
+    Attributes:
+        best: The best shapes.
+        fresh: Where the best of the shapes ended that know nothing of each other: mean squared misses, m^2.
+        drawn: How many of these there were.
+    """
+
+    best: Refined
+    fresh: FloatArray
+    drawn: int
+
+    @classmethod
+    def of(cls, task: Task, fresh: Population) -> Valleys:
+        """Return what fresh shapes tell."""
+        best = _weighed(task, refine(task, fresh))
+        return cls(best, best.cost, len(best.cost))
+
+    @property
+    def agreed(self) -> bool:
+        """Whether the best valley is known by so many fresh starts that there hardly is a better one.
+
+        Or there are shapes that meet all targets: enough, if there are obstacles that more is to be known of.
+        """
+        if np.count_nonzero(self.best.cost < _EXACT) >= _ENOUGH:
+            return True
+        agreeing = np.count_nonzero(self.fresh <= (1.0 + _SAME) * self.best.cost.min())
+        return bool(agreeing >= _AGREEING * self.drawn)
+
+    def explored(
+        self, task: Task, draw: Callable[[], Population], rng: np.random.Generator, stop: Callable[[], bool]
+    ) -> Valleys:
+        """Return what is known after a search for better valleys.
+
+        Args:
+            task: The task.
+            draw: Draws fresh shapes.
+            rng: Source of randomness.
+            stop: Asked after each step; when it says yes, the search ends.
+        """
+        now = replace(self, best=self.best.best(_KEPT))
+        for _ in range(_ROUNDS):
+            for step in (_bent, _swapped):
+                if now.agreed or stop():
+                    return now
+                children = step(task, now.best.take(_parents(now.best)), rng)
+                now = replace(now, best=now.best.improved_by(children))
+            now = now.with_fresh(task, draw())
+        return now
+
+    def with_fresh(self, task: Task, drawn: Population) -> Valleys:
+        """Return what is known with some more fresh shapes, the worst of which are given up half-way."""
+        first, last = _FRESH
+        refined = refine(task, drawn, iterations=first).best(len(drawn.length) // _GO_ON)
+        refined = _weighed(task, refine(task, refined.population, iterations=last))
+        fresh = np.concatenate([self.fresh, refined.cost])
+        drawn_now = self.drawn + len(drawn.length)
+        return Valleys(self.best.improved_by(refined), fresh, drawn_now)
+
+
+def _bent(task: Task, parents: Refined, rng: np.random.Generator) -> Refined:
+    """Return shapes after bending them at random by a little or more."""
+    unknowns = parents.population.unknowns
+    size = rng.choice(_SIZES, (len(unknowns), 1)) * np.ones(unknowns.shape)
+    size[:, 2 * ARCS :] *= _LENGTHS
+    changed = into_limits(task.robot, unknowns + size * rng.normal(size=unknowns.shape))
+    return _weighed(task, refine(task, Population(task.robot, changed), iterations=_BENT))
+
+
+def _swapped(task: Task, parents: Refined, rng: np.random.Generator) -> Refined:
+    """Return shapes after giving one or two targets of each another angle of joint 2."""
+    limits, theta2 = task.robot.joint_limits.second, parents.joints[..., 1]
+    swapped = rng.integers(1, _MOST_SWAPPED + 1, (len(theta2), 1))
+    chosen = np.argsort(rng.uniform(size=theta2.shape), axis=1) < swapped
+    angles = np.where(chosen, rng.uniform(limits.lower, limits.upper, theta2.shape), theta2)
+    first, last = _SWAPPED
+    led = refine(task, parents.population, angles, iterations=first)
+    return _weighed(task, refine(task, led.population, iterations=last))
+
+
+def _parents(refined: Refined) -> NDArray[np.intp]:
+    """Return the best shapes in order, many times over, those aside that miss like one before."""
+    order = np.argsort(refined.cost, kind="stable")
+    kinds = np.round(np.log(refined.cost[order] + _EXACT) / _ALIKE)
+    different = order[np.flatnonzero(np.diff(kinds, prepend=-np.inf))]
+    return np.resize(different[:_PARENTS], _PARENTS * _CHILDREN)
+
+
+def _weighed(task: Task, refined: Refined) -> Refined:
+    """Return shapes whose costs say, too, how deep they are inside obstacles or themselves, m^2."""
+    depth = overlaps(task, refined.population, refined.joints)
+    return replace(refined, cost=refined.cost + np.mean(depth**2, axis=-1))
