@@ -57,6 +57,12 @@ def test_the_fit_with_all_targets_is_better_than_with_the_part(scan):
     assert rms(solve(task).best.verification) < rms(verify(task, of_part))
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_joint_1_has_its_dead_zone_where_no_target_is_though_the_part_does_not_show_where(seed):
+    task, _ = scanned(3000, tolerance=6e-3)
+    assert solve(task, seed=seed).found
+
+
 def test_the_worst_miss_is_levelled():
     task, _ = scanned(1500, tolerance=2e-3)
     worst = {

@@ -8,23 +8,28 @@ with every target.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.population import Population
+from synth.robot import ArcChains, Interval, link_to_pose
+from synth.synthesis.population import ARCS, Population
+from synth.synthesis.postures import Aims, Postures
 from synth.synthesis.refinement import refine
 from synth.task import Objective
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from synth.arrays import FloatArray
     from synth.robot import Arm
     from synth.task import Task
 
 # That the nonlinear program knows all at once.
 _MOST_TARGETS = {Objective.LEAST_SQUARES: 100, Objective.MINIMAX: 40}
-_PART = 40  # of more targets, those that it knows
+_PART = 40  # of more targets, those that it knows at first
 # Steps with a larger part, and then with all.
 _SAMPLE, _STEPS, _STEPS_WITH_ALL = 2000, 8, 2
 _LAWSON_STEPS, _LEAST_SHARE = 25, 1e-6
@@ -43,6 +48,33 @@ def part_of(task: Task, seed: int) -> Task:
     return replace(_random_part(task, _PART, seed), objective=Objective.LEAST_SQUARES)
 
 
+def ranked(task: Task, arms: Sequence[Arm], seed: int) -> list[Arm]:
+    """Return arms that were found for a part of the targets, best for a larger part first.
+
+    A part may say nothing of where the dead zone of joint 1 should be. So where an arm misses targets, one
+    that is turned about axis 1 stands beside it.
+
+    Args:
+        task: The task with all its targets.
+        arms: The arms in shapes of equal arcs, the best for the part first.
+        seed: The same larger part for the same seed.
+    """
+    some = _random_part(task, _SAMPLE, seed)
+    missing: list[tuple[float, Arm]] = []
+    reaching = []
+    for arm in arms:
+        for one in (arm, None):
+            turned = one or _with_joint_1_clear(some, arm)
+            if turned is None:
+                break
+            relative = _relative_misses(some, turned)
+            if np.all(relative <= np.sqrt(some.weights)):
+                reaching.append(turned)
+                break
+            missing.append((float(np.mean(relative**2)), turned))
+    return [*reaching, *(arm for _, arm in sorted(missing, key=lambda pair: pair[0]))]
+
+
 def _random_part(task: Task, count: int, seed: int) -> Task:
     if count >= len(task.targets):
         return task
@@ -59,11 +91,41 @@ def improved(task: Task, arm: Arm) -> Arm:
         task: The task with all its targets.
         arm: The robot in a shape of equal arcs, near the best for a part of the targets.
     """
+    squares = replace(task, objective=Objective.LEAST_SQUARES)
     for count, steps in ((_SAMPLE, _STEPS), (len(task.targets), _STEPS_WITH_ALL)):
-        some = _random_part(task, count, 0)
+        some = _random_part(squares, count, 0)
         refined = refine(some, Population.of(arm), iterations=steps)
         arm = refined.population.arm(0, task.base)
     return arm
+
+
+def _with_joint_1_clear(task: Task, arm: Arm) -> Arm | None:
+    """Return an arm of about the same workspace that has the dead zone of joint 1 where no target is.
+
+    Returns:
+        The arm; None if the targets leave no gap, or no link was found.
+    """
+    limits = task.robot.joint_limits
+    around = replace(limits, base=Interval(-math.pi, math.pi))
+    free = improved(replace(task, robot=replace(task.robot, joint_limits=around)), arm)
+    nearest = Postures.nearest(Aims(task.positions, around), Population.of(free).kinematics)
+    angles = np.sort(nearest.theta1[0])
+    gaps = np.diff(angles, append=angles[0] + 2.0 * math.pi)
+    widest = int(np.argmax(gaps))
+    # Joint 1 is to stand at theta1 + turn: the gap then spans from its upper limit to the lower one.
+    turn = Interval(
+        limits.base.lower + 2.0 * math.pi - angles[widest] - gaps[widest], limits.base.upper - angles[widest]
+    )
+    if turn.lower > turn.upper:
+        return None
+    rotation, end = free.shape.end_frame()
+    shape = link_to_pose(task.robot.link, end, rotation[:, 0], theta1=turn)
+    if shape is None:
+        return None
+    # The link's end has the same axis 2; what joint 2 needs, too, the steps see to.
+    chains = ArcChains(task.robot.link, ARCS)
+    coarse = chains.shape(chains.into_limits(chains.row(shape)[None])[0])
+    return improved(task, replace(free, robot=task.robot, shape=coarse))
 
 
 def levelled(task: Task, arm: Arm) -> Arm:
@@ -79,7 +141,7 @@ def levelled(task: Task, arm: Arm) -> Arm:
     """
     best, least = arm, _relative_misses(task, arm)
     worst = task.table.take(np.sort(np.argsort(-least, kind="stable")[:_SAMPLE]))
-    some = replace(task, targets=worst)
+    some = replace(task, targets=worst, objective=Objective.LEAST_SQUARES)
     share = np.full(len(worst), 1.0)
     for _ in range(_LAWSON_STEPS):
         relative = _relative_misses(some, arm)

@@ -17,7 +17,7 @@ from synth.robot import ANYWHERE, Interval, links_to_poses
 from synth.synthesis.certificate import Certifier
 from synth.synthesis.exact_starts import exact_designs
 from synth.synthesis.impossibility import why_impossible
-from synth.synthesis.many_targets import improved, levelled, part_of
+from synth.synthesis.many_targets import improved, levelled, part_of, ranked
 from synth.synthesis.nlp import Structure, SynthesisNlp, shared_nlp
 from synth.synthesis.population import ARCS
 from synth.synthesis.screening import Start, starts
@@ -385,17 +385,19 @@ class _Search:
         """Return designs improved for all targets, and verified with them, in their order."""
         if self.part is self.task:
             return designs
+        with self.clock.on("solving"):
+            arms = ranked(self.task, [design.arm for design in designs], self.seed)
         whole = []
-        for design in designs[: max(1, _VERIFIED_AT_MOST // len(self.task.targets))]:
+        for found in arms[: max(1, _VERIFIED_AT_MOST // len(self.task.targets))]:
             with self.clock.on("solving"):
-                arm = improved(self.task, design.arm)
+                arm = improved(self.task, found)
                 if self.task.objective is Objective.MINIMAX:
                     arm = levelled(self.task, arm)
             with self.clock.on("verifying"):
                 check = verify(self.task, arm)
                 # The steps know neither floor nor obstacles.
                 if not check.possible:
-                    arm, check = design.arm, verify(self.task, design.arm)
+                    arm, check = found, verify(self.task, found)
             if check.possible:
                 whole.append(Design(arm, check))
             else:
