@@ -30,6 +30,8 @@ _FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-3, 1e-9, 1e9
 # Exponents of the misses; where the worst one counts it is the large one after a third of the steps.
 _SQUARES, _NEARLY_WORST, _WORST_AFTER = 2.0, 12.0, 3
 _TOGETHER = 4000  # postures, so that the arrays stay in the cache
+# So many shapes with squared misses below this, m^2, are enough: the others need not arrive, too.
+_ENOUGH, _EXACT = 40, 1e-16
 _TINY = 1e-30  # m^2
 
 
@@ -124,6 +126,8 @@ class _Descent:
                 self._exponent = _NEARLY_WORST
                 self._cost = self._cost_of(self._population, self._postures)
             self._step()
+            if np.count_nonzero(self._cost < _EXACT) >= _ENOUGH:
+                break
             last = iteration == iterations - 1
             if not (keep_branches or last) and (iteration + 1) % _STEPS_ON_BRANCHES == 0:
                 nearest = Postures.nearest(self._aims, self._population.kinematics)
