@@ -1,0 +1,100 @@
+"""From start points to shapes that were checked: the nonlinear program, then the verification."""
+
+from __future__ import annotations
+
+import math
+import threading
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from synth.errors import SolverError
+from synth.synthesis.nlp import Structure, SynthesisNlp, shared_nlp
+from synth.synthesis.population import ARCS
+from synth.synthesis.ranking import rank
+from synth.synthesis.separation import separations
+from synth.synthesis.solution import Design
+from synth.synthesis.verification import verify
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from synth.arrays import FloatArray
+    from synth.robot import Arm
+    from synth.synthesis.clock import Clock
+    from synth.synthesis.screening import Start
+    from synth.synthesis.separation import Separation
+    from synth.task import Task
+
+# How often planes between the arm and obstacles are taken anew where the solver ended.
+_PLANES_ANEW = 5
+_GAINED = 0.9  # of the objective before: the least gain for which to go on
+_CLASHES = ("obstacle", "itself")
+
+
+@dataclass
+class Polishing:
+    """Polishes shapes for one task, checks them, and keeps what it saw.
+
+    Attributes:
+        task: The task.
+        clock: Counts the time.
+        out_of_time: Asked many times a second; when it says yes, the solver ends with what it has.
+        designs: The shapes so far that the hardware can take.
+        blocked: Those that it cannot.
+        breakdowns: What the solver said where it broke down.
+    """
+
+    task: Task
+    clock: Clock
+    out_of_time: Callable[[], bool]
+    designs: list[Design] = field(default_factory=list)
+    blocked: list[Design] = field(default_factory=list)
+    breakdowns: list[str] = field(default_factory=list)
+
+    @property
+    def found(self) -> bool:
+        """Whether a shape reaches every target."""
+        return any(design.verification.found for design in self.designs)
+
+    def polish(self, start: Start, *, near: bool = False) -> None:
+        """Solve from one start; where something is in the way, take the planes before it anew.
+
+        Args:
+            start: The start.
+            near: Whether the answer is near, so that the solver begins with short steps.
+        """
+        arm, joints, itself = start.arm, start.joints, False
+        best = math.inf
+        for _ in range(_PLANES_ANEW):
+            with self.clock.on("solving"):
+                planes = separations(self.task, arm, joints, itself=itself)
+                try:
+                    answer = self._nlp(planes, near=near).solve(self.task, arm, joints, self.out_of_time)
+                except SolverError as error:
+                    self.breakdowns.append(str(error))
+                    return
+            arm, joints = answer.arm, answer.joints
+            design = self.keep(arm, joints)
+            clashes = [v for v in design.verification.violations if v.limit.startswith(_CLASHES)]
+            if not itself and any(clash.limit == "itself" for clash in clashes):
+                # The start kept clearer of itself than where the way from there led without planes.
+                arm, joints, itself = start.arm, start.joints, True
+            # Other planes may give way: as long as they do, or as something is in the way.
+            objective = rank(self.task, design)[1]
+            done = not planes or objective > _GAINED * best or design.verification.found
+            best = min(best, objective)
+            if (done and not clashes) or self.out_of_time():
+                return
+
+    def _nlp(self, planes: Sequence[Separation], *, near: bool) -> SynthesisNlp:
+        structure = Structure.of(self.task)
+        if planes:
+            return SynthesisNlp(structure, ARCS, planes)
+        return shared_nlp(structure, ARCS, near, threading.get_ident())
+
+    def keep(self, arm: Arm, joints: FloatArray) -> Design:
+        """Check a shape, keep it where it belongs, and return it."""
+        with self.clock.on("verifying"):
+            design = Design(arm, verify(self.task, arm, joints))
+        (self.designs if design.verification.possible else self.blocked).append(design)
+        return design

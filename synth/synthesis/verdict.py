@@ -1,0 +1,58 @@
+"""What a search says of itself: its status, and in words what is missed and why."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.synthesis.exact_starts import exact_designs
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from synth.synthesis.solution import Design, Status
+    from synth.task import Task
+
+_REASONS = 3  # of a kind that are told
+
+
+def message(task: Task, status: Status, designs: Sequence[Design], reasons: Sequence[str]) -> str:
+    """Return how a search ended in one sentence: its status, what the best shape misses, and why."""
+    misses = _what_misses(task, designs[0]) if designs else []
+    return ": ".join(filter(None, [status.sentence, "; ".join([*misses, *reasons])]))
+
+
+def why_no_better(task: Task, designs: Sequence[Design], blocked: Sequence[Design]) -> tuple[str, ...]:
+    """Return sentences that say why a search found no more, as far as that is known.
+
+    Args:
+        task: The task.
+        designs: The shapes that were found, the best first.
+        blocked: Shapes that the hardware cannot take.
+    """
+    if designs:
+        return _why_not_exact(task)
+    # As far as the shape tells that breaks the fewest limits.
+    nearest = min((d.verification.violations for d in blocked), key=len, default=())
+    blocking = [violation.sentence for violation in nearest[:_REASONS]]
+    return ("no shape was found that the hardware can take", *blocking)
+
+
+def _what_misses(task: Task, design: Design) -> list[str]:
+    """Return a sentence for each target that is not reached, the worst first, three at most."""
+    check = design.verification
+    order = np.argsort(-check.misses / task.tolerances)
+    order = order[~np.array(check.within_tolerance)[order]]
+    sentences = [
+        f"{task.targets[i].name} misses by {1e3 * check.misses[i]:.2f} mm" for i in order[:3].tolist()
+    ]
+    return sentences if len(order) <= 3 else [*sentences, f"and {len(order) - 3} more"]
+
+
+def _why_not_exact(task: Task) -> tuple[str, ...]:
+    """Return a sentence if algebra knows of no arm at all that meets the targets exactly."""
+    if exact_designs(task) != ():
+        return ()
+    count = len(task.targets)
+    return (f"no arm with this rigid link passes exactly through such {count} targets, by algebra",)
