@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 # Taken off every bound, m for each metre of the robot's size: see "Rounding" in docs/bound.md.
 _ROUNDING = 1e-9
-_BATCH = 2048
+_BATCH = 512
 _BOXES_AT_MOST = 2_000_000  # open at a time, some 200 bytes each
 # Bounds from this many of the targets hold for all of them.
 _TARGETS = 12
