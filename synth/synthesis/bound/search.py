@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
-    from synth.geometry import SweptCircle
+    from synth.synthesis.bound.ends import LinkEnd
     from synth.task import Task
 
 # Taken off every bound, m for each metre of the robot's size: see "Rounding" in docs/bound.md.
@@ -79,7 +79,7 @@ def prove(
     tightest: float,
     gap: float = 1e-4,
     stop: Callable[[], bool],
-    improve: Callable[[SweptCircle], float] | None = None,
+    improve: Callable[[LinkEnd], float] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Bound | None:
     """Bound the worst weighted miss over all shapes that the hardware allows from below.
@@ -94,8 +94,8 @@ def prove(
         tightest: The tightest tolerance: a miss counts by it over its target's tolerance, m.
         gap: The proof ends when the bound is as near as this to `best_found`, m.
         stop: Asked many times a second; when it says yes, the bound so far is returned.
-        improve: Looks for a shape with about the workspace of a circle that promises less than the best
-            found, and returns the worst weighted miss of the best shape now, m.
+        improve: Looks for a shape whose link ends about so, which promises less than the best found, and
+            returns the worst weighted miss of the best shape now, m.
         progress: Told the bound so far, m.
 
     Returns:
@@ -130,9 +130,9 @@ def prove(
         left = bounds.evaluate(halves, enough)
         boxes = Boxes.joined([boxes.take(~first), left])
         count += len(halves)
-        circle = promising.circle(left, enough) if improve is not None else None
-        if circle is not None and improve is not None:
-            best_found = min(best_found, improve(circle))
+        end = promising.end(left, enough) if improve is not None else None
+        if end is not None and improve is not None:
+            best_found = min(best_found, improve(end))
             enough = min(enough, best_found - wanted)
             boxes = boxes.take(boxes.bound < enough)
         lower = min(float(boxes.bound.min(initial=enough)), enough)
