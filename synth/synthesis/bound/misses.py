@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
 # Boxes in which P5 moves by less than these, m, look at finer cells. Above the first, no affine bound helps.
 _FINER = (0.2, 0.02, 0.002)
+# Where psi keeps no target from its nearest branch, it is cut only in boxes of which no other side moves P5
+# by this much, m: there the link may forbid it.
+_THIN = 1e-4
 _PARED = 8  # parts of a cell of psi at each end that are looked at one by one
 
 
@@ -78,7 +81,7 @@ class MissBounds:
         """Return how far each parameter alone moves P5, shape (N, 5), m."""
         scale = np.array([1.0, 1.0, self.circle.arm, self.circle.arm, self.circle.radius])
         sides = boxes.half * scale
-        sides[:, 4] = np.where(boxes.by_psi, sides[:, 4], 0.0)
+        sides[:, 4] = np.where(boxes.by_psi, sides[:, 4], np.minimum(sides[:, 4], _THIN))
         return np.asarray(sides)
 
     def _coarse(self, boxes: Boxes, enough: float) -> tuple[Boxes, NDArray[np.uint64], NDArray[np.bool_]]:
@@ -116,22 +119,27 @@ class MissBounds:
             middle, half = boxes.middle[:, 4], boxes.half[:, 4]
             lower = np.maximum(middle - half, grid.middles[first] - grid.half)
             upper = np.minimum(middle + half, grid.middles[last] + grid.half)
-            lower, upper = self._pared(boxes, lower, upper)
-            open_ = lower <= upper
+            lower, upper, open_ = self._pared(boxes, lower, upper)
             boxes = boxes.with_psi(lower, np.maximum(lower, upper)).take(open_)
             alive, psi = alive[open_], psi[open_]
         return boxes, alive, psi
 
-    def _pared(self, boxes: Boxes, lower: FloatArray, upper: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return psi from `lower` to `upper`, less what the link forbids at both ends."""
-        width = np.minimum(2.0 * self.grid.half, upper - lower) / _PARED
+    def _pared(
+        self, boxes: Boxes, lower: FloatArray, upper: FloatArray
+    ) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
+        """Return psi from `lower` to `upper`, less what the link forbids at both ends, and if any is left."""
+        cell = 2.0 * self.grid.half
+        width = np.minimum(cell, upper - lower) / _PARED
         steps = np.arange(_PARED)
         below = lower[:, None] + (steps + 0.5) * width[:, None]
         above = upper[:, None] - (steps + 0.5) * width[:, None]
         allowed = self.limits.allow_direction(boxes, np.hstack([below, above]), 0.5 * width[:, None])
         cut = np.logical_and.accumulate(~allowed[:, :_PARED], axis=1).sum(axis=1)
         cut_above = np.logical_and.accumulate(~allowed[:, _PARED:], axis=1).sum(axis=1)
-        return lower + cut * width, upper - cut_above * width
+        # A narrow interval is covered by its parts, one without width by each of them.
+        left = allowed.any(axis=1) | (upper - lower > cell)
+        lower, upper = lower + cut * width, upper - cut_above * width
+        return lower, upper, left & (lower <= upper)
 
     def _fine(self, candidates: Candidates, enough: float, cuts: int) -> Boxes:
         """Bound the worst weighted miss in small boxes by affine functions."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.synthesis.bound.boxes import Boxes
+from synth.synthesis.bound.limits import SLACK
 from synth.synthesis.bound.misses import MissBounds
 from synth.synthesis.bound.promising import Promising
 from synth.synthesis.impossibility import longest_rigid_link
@@ -116,8 +117,7 @@ def prove(
     bounds = MissBounds(task, chosen, factors[chosen])
     link, d12 = bounds.limits.link, task.robot.d12
     lowest = d12 - link.length.upper
-    if task.floor is not None:
-        lowest = max(lowest, task.floor - abs(task.robot.tip_offset) - task.robot.d34)
+    lowest = max(lowest, bounds.limits.lowest_end - SLACK)
     boxes = Boxes.cover(link.length.upper, (min(lowest, d12), d12 + link.length.upper))
     promising = Promising(bounds)
     count, lower = 0, 0.0
