@@ -1,4 +1,4 @@
-"""How far affine functions that must not be positive narrow boxes: (13) and (14) of docs/bound.md."""
+"""How far affine functions that must not be positive narrow boxes: (14) and (15) of docs/bound.md."""
 
 from __future__ import annotations
 

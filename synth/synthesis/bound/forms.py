@@ -123,7 +123,7 @@ class Circle:
 
 
 class _Points:
-    """P5 in the middles of cells, and its derivatives: (1) to (4) of docs/bound.md.
+    """P5 in the middles of cells, and its derivatives: (1) to (4) and (13) of docs/bound.md.
 
     Vectors are told by their components along u, e1 and e2, which are arrays of shape (C,).
 

@@ -100,7 +100,7 @@ class Limits:
 
     @property
     def upturn(self) -> float:
-        """Tightest radius in which a link turns from level to upright at its end, m; 0 if some are too short."""
+        """Tightest radius in which every link can turn upright at its end, m; 0 if some are too short."""
         link = self.link
         needed = 0.5 * math.pi * link.min_bend_radius + 0.5 * link.diameter
         return link.min_bend_radius if needed <= link.length.lower else 0.0
