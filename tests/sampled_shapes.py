@@ -74,7 +74,8 @@ def parameters(population):
 
 
 def boxes_at(chart, middle, half):
-    return Boxes(chart, middle, half, np.zeros(len(chart)), np.zeros(len(chart), dtype=bool))
+    numbers = np.arange(len(chart))
+    return Boxes(chart, middle, half, np.zeros(len(chart)), np.zeros(len(chart), dtype=bool), numbers)
 
 
 def worst_misses(task, population):
@@ -110,12 +111,11 @@ def contradictions(task, population, rng):
     for enough in np.quantile(worst, [0.1, 0.5, 0.9]):
         rows = np.flatnonzero(worst < enough)
         left = bounds.evaluate(boxes.take(rows), enough)
-        # A box is known by its middle: only its psi changes.
-        place = {middle.tobytes(): row for row, middle in enumerate(left.middle[:, :4].copy())}
-        after = np.array([place.get(boxes.middle[row, :4].tobytes(), -1) for row in rows])
+        after = np.full(len(rows), -1)
+        after[left.origin] = np.arange(len(left))
         below = left.bound[after] <= worst[rows] + 1e-12
-        psi = np.abs(where[rows, 4] - left.middle[after, 4]) <= left.half[after, 4] + 1e-9
-        wrong += int(np.count_nonzero(~((after >= 0) & below & psi)))
+        within = (np.abs(where[rows] - left.middle[after]) <= left.half[after] + 1e-9).all(axis=1)
+        wrong += int(np.count_nonzero(~((after >= 0) & below & within)))
         asked += len(rows)
         ratios.append((left.bound[after] / worst[rows])[left.bound[after] > 0.0])
     return wrong, asked, np.concatenate(ratios)

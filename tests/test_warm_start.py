@@ -34,6 +34,14 @@ def test_a_neighbour_is_found_in_one_start_and_again_alike(neighbour):
     assert same(solution, solve(task, warm_start=neighbour))
 
 
+def test_a_neighbour_of_a_task_with_a_present_shape_is_followed_though_its_link_is_of_finer_arcs(neighbour):
+    task = replace(neighbour.task, current=neighbour.robot.shape)
+    turned = replace(task, current=planted_task(1, 4)[1].shape)
+    near = solve(turned)
+    assert len(near.robot.shape.lengths) > len(neighbour.robot.shape.lengths)
+    assert solve(moved(task, 0.003), warm_start=near).found
+
+
 def test_targets_and_base_that_move_together_keep_the_shape(neighbour):
     task = replace(
         neighbour.task,

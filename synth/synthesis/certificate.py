@@ -5,31 +5,32 @@ from __future__ import annotations
 import math
 import threading
 from dataclasses import dataclass, field, replace
+from itertools import islice
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from synth.errors import SolverError
-from synth.geometry import Invariants
+from synth.robot import Arm
 from synth.synthesis.bound import Bound, prove
-from synth.synthesis.exact_starts import nearest_to_designs
 from synth.synthesis.nlp import Structure, shared_nlp
-from synth.synthesis.population import ARCS, Population
-from synth.synthesis.refinement import refine
+from synth.synthesis.population import ARCS
+from synth.synthesis.screening import starts
 from synth.task import Objective
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from synth.arrays import FloatArray
-    from synth.geometry import SweptCircle
-    from synth.robot import Arm
+    from synth.synthesis.bound import LinkEnd
     from synth.synthesis.solution import Design
     from synth.task import Task
 
+_GAP = 1e-4  # m: the proof ends when the bound is as near as this to the best shape
+_STARTS = 16  # for the least worst miss
 _POLISHED = 6  # of the designs of the search, for the least worst miss
-_LINKS = 20_000  # drawn, to find some that end like a surface that the bound asks for
-_NEAREST = 6  # of these for each way in which the surface may lie
+_LINKS = 96  # bent at random, to be brought to an end that the bound asks for
+_NEAREST = 16  # of these are looked at
 _TRIED = 3
 
 
@@ -44,7 +45,7 @@ class Certifier:
         keep: Checks a shape and puts it to the designs if it is possible.
         stop: Whether to end with what there is.
         progress: Told the least worst weighted miss found and the bound so far, m.
-        rng: Source of randomness.
+        seed: Seed of the search.
     """
 
     task: Task
@@ -53,25 +54,30 @@ class Certifier:
     keep: Callable[[Arm, FloatArray], Design]
     stop: Callable[[], bool]
     progress: Callable[[float, float], None]
-    rng: np.random.Generator
+    seed: int
+    _rng: np.random.Generator = field(init=False)
     _minimax: Task = field(init=False)
-    _links: Population = field(init=False)
 
     def __post_init__(self) -> None:
         table = self.task.table
         equal = replace(table, weights=np.ones(len(table)))
         self._minimax = replace(self.task, objective=Objective.MINIMAX, targets=equal)
-        self._links = Population.sample(self.task.robot, _LINKS, self.rng)
+        self._rng = np.random.default_rng(self.seed)
 
     def certificate(self) -> Bound | None:
         """Return the bound; None where there is no proof for such a task."""
         for design in sorted(self.designs, key=self._worst)[:_POLISHED]:
             self._polish(design.arm, design.verification.joints)
+        if self._best() > _GAP:
+            # The shapes so far were searched for by the task's own objective, maybe another one.
+            for start in islice(starts(self._minimax, self.seed, stop=self.stop), _STARTS):
+                self._polish(start.arm, start.joints)
         return prove(
             self.task,
             self._best(),
             self._best_misses(),
             tightest=self.tightest,
+            gap=_GAP,
             stop=self.stop,
             improve=self._improve,
             progress=lambda lower: self.progress(self._best(), lower),
@@ -90,19 +96,27 @@ class Certifier:
             return np.zeros(len(self.task.targets))
         return min(self.designs, key=self._worst).verification.misses
 
-    def _polish(self, arm: Arm, joints: FloatArray) -> None:
+    def _polish(self, arm: Arm, joints: FloatArray, *, near: bool = False) -> None:
         try:
-            program = shared_nlp(Structure.of(self._minimax), ARCS, False, threading.get_ident())
+            program = shared_nlp(Structure.of(self._minimax), ARCS, near, threading.get_ident())
             answer = program.solve(self._minimax, arm, joints, self.stop)
         except SolverError:
             return  # other starts may do
         self.keep(answer.arm, answer.joints)
 
-    def _improve(self, circle: SweptCircle) -> float:
-        """Look for a link whose workspace is about that of a circle; return the least worst miss found, m."""
-        near = nearest_to_designs(self._links, [Invariants.from_circle(circle)], _NEAREST)
-        links = self._links.take(near)
-        refined = refine(self.task, links)
-        for index in np.argsort(refined.cost, kind="stable")[:_TRIED]:
-            self._polish(refined.population.arm(int(index), self.task.base), refined.joints[index])
+    def _improve(self, end: LinkEnd) -> float:
+        """Look for a link that ends about so; return the least worst weighted miss found, m."""
+        robot = self.task.robot
+        d35, d45 = robot.rigid_link.d35.lower, robot.rigid_link.d45.lower
+        weights = self.tightest / self.task.tolerances
+        arms, joints, worst = [], [], []
+        for shape in end.links(robot.link, ARCS, _LINKS, self._rng)[:_NEAREST]:
+            arms.append(Arm(robot, shape, d35, d45, self.task.base))
+            closest, misses = arms[-1].closest_joints(self.task.table.positions)
+            joints.append(closest)
+            worst.append(np.max(misses * weights))
+        for index in np.argsort(worst, kind="stable")[:_TRIED]:
+            self.keep(arms[index], joints[index])
+            for near in (False, True):
+                self._polish(arms[index], joints[index], near=near)
         return self._best()

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.robot import ArcChains, Interval, link_to_pose
-from synth.synthesis.population import ARCS, Population
+from synth.robot import Interval, link_to_pose
+from synth.synthesis.population import Population, in_equal_arcs
 from synth.synthesis.postures import Aims, Postures
 from synth.synthesis.refinement import refine
 from synth.task import Objective
@@ -123,9 +123,7 @@ def _with_joint_1_clear(task: Task, arm: Arm) -> Arm | None:
     if shape is None:
         return None
     # The link's end has the same axis 2; what joint 2 needs, too, the steps see to.
-    chains = ArcChains(task.robot.link, ARCS)
-    coarse = chains.shape(chains.into_limits(chains.row(shape)[None])[0])
-    return improved(task, replace(free, robot=task.robot, shape=coarse))
+    return improved(task, in_equal_arcs(replace(free, robot=task.robot, shape=shape)))
 
 
 def levelled(task: Task, arm: Arm) -> Arm:

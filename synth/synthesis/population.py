@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from synth.robot import Robot
 
 _AT_LIMIT = 1e-9
+_EQUAL = 1e-12  # of the whole length
 _TINY = 1e-300
 _LEAST_RADIUS = 1e-9  # m; with P3, P4, P5 in line the radius has no derivative
 ARCS = 4  # equal arcs of a link: eight curvatures and a length for the five numbers of an end pose
@@ -147,6 +148,15 @@ class Population:
         shape = LinkShape(self.curvatures[index], np.full(ARCS, self.length[index] / ARCS))
         d35, d45 = self.rigid_links
         return Arm(self.robot, shape, float(d35[index]), float(d45[index]), base)
+
+
+def in_equal_arcs(arm: Arm) -> Arm:
+    """Return an arm whose link is of ARCS equal arcs: the same, or the one nearest to it in its curvature."""
+    lengths = arm.shape.lengths
+    if len(lengths) == ARCS and np.ptp(lengths) <= _EQUAL * arm.shape.length:
+        return arm
+    chains = ArcChains(arm.robot.link, ARCS)
+    return replace(arm, shape=chains.shape(chains.into_limits(chains.row(arm.shape)[None])[0]))
 
 
 def into_limits(robot: Robot, unknowns: FloatArray) -> FloatArray:

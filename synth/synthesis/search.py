@@ -15,6 +15,7 @@ from synth.synthesis.certificate import Certifier
 from synth.synthesis.impossibility import why_impossible
 from synth.synthesis.many_targets import improved, levelled, ranked
 from synth.synthesis.polishing import Polishing
+from synth.synthesis.population import in_equal_arcs
 from synth.synthesis.ranking import best_of, rank
 from synth.synthesis.screening import Start, starts
 from synth.synthesis.solution import Design, Solution, Status
@@ -81,7 +82,7 @@ class Search:
     def follow(self, designs: Sequence[Design]) -> bool:
         """Polish the best shapes for a task nearby; whether one of them reaches every target."""
         for design in designs[:_FOLLOWED]:
-            arm = replace(design.arm, robot=self.task.robot, base=self.task.base)
+            arm = in_equal_arcs(replace(design.arm, robot=self.task.robot, base=self.task.base))
             self.polishing.polish(Start(arm, arm.closest_joints(self.part.table.positions)[0]), near=True)
             self.starts += 1
             if self.polishing.found or self._out_of_time():
@@ -143,7 +144,7 @@ class Search:
             lambda worst, lower: self.progress(
                 Progress(self.starts, self.starts_at_most, worst, self.polishing.found, lower)
             ),
-            np.random.default_rng(self.seed),
+            self.seed,
         )
         with self.clock.on("proving"):
             self.bound = certifier.certificate()

@@ -1,5 +1,6 @@
 """Lower bounds of the worst miss over all shapes, by branch and bound: `prove` is the one verb."""
 
+from synth.synthesis.bound.ends import LinkEnd
 from synth.synthesis.bound.search import Bound, prove
 
-__all__ = ["Bound", "prove"]
+__all__ = ["Bound", "LinkEnd", "prove"]

@@ -39,6 +39,7 @@ class Boxes:
         half: Half the widths, shape (N, 5).
         bound: What is known of the worst weighted miss: nowhere in the box is it less, shape (N,), m.
         by_psi: Whether to cut psi, too: it keeps some target from its nearest branch, shape (N,).
+        origin: Number of the box, of those that were evaluated together, that it is a part of, shape (N,).
     """
 
     chart: NDArray[np.intp]
@@ -46,6 +47,7 @@ class Boxes:
     half: FloatArray
     bound: FloatArray
     by_psi: NDArray[np.bool_]
+    origin: NDArray[np.intp]
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -61,7 +63,8 @@ class Boxes:
         lower = np.array([[0.0, heights[0], least, -quarter, -math.pi] for *_, least in _CHARTS])
         upper = np.array([[rho, heights[1], quarter, quarter, math.pi]] * count)
         middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
-        return cls(np.arange(count), middle, half, np.zeros(count), np.zeros(count, dtype=bool))
+        numbers = np.arange(count)
+        return cls(numbers, middle, half, np.zeros(count), np.zeros(count, dtype=bool), numbers)
 
     @classmethod
     def joined(cls, parts: list[Boxes]) -> Boxes:
@@ -91,6 +94,11 @@ class Boxes:
         middle[:, 4], half[:, 4] = 0.5 * (lower + upper), 0.5 * (upper - lower)
         return replace(self, middle=middle, half=half)
 
+    def narrowed(self, lower: FloatArray, upper: FloatArray) -> Boxes:
+        """Return the boxes with each side between limits in units of the box, shape (N, 5) each."""
+        middle = self.middle + 0.5 * (lower + upper) * self.half
+        return replace(self, middle=middle, half=0.5 * (upper - lower) * self.half)
+
     @cached_property
     def end(self) -> FloatArray:
         """The link's end p of the middle, shape (N, 3), m."""
@@ -113,10 +121,14 @@ class Boxes:
 
     @cached_property
     def beta_axis(self) -> FloatArray:
-        """The axis k about which beta turns u, e1 and e2, shape (N, 3); alpha turns them about e2."""
-        eye, signs = np.eye(3), np.array([c[1] for c in _CHARTS])
-        axes = np.array([signs[i] * np.cross(eye[c[0]], eye[c[3]]) for i, c in enumerate(_CHARTS)])
-        return axes[self.chart]
+        """Components along u and e1 of the axis k about which beta turns the frame, shape (2, N).
+
+        Alpha turns it about e2. The axis is e_a or -e_a, as the chart is right-handed or not.
+        """
+        eye = np.eye(3)
+        signs = np.array([sign * np.cross(eye[m], eye[b]) @ eye[a] for m, sign, a, b, _ in _CHARTS])
+        alpha = self.middle[:, 2]
+        return np.asarray(signs[self.chart] * np.stack([np.sin(alpha), np.cos(alpha)]))
 
     @cached_property
     def end_radius(self) -> FloatArray:

@@ -92,6 +92,19 @@ class Limits:
         """Largest total bend of the link, rad."""
         return min(self.link.max_total_bend, self.link.length.upper * self.link.max_curvature)
 
+    @property
+    def lowest_end(self) -> float:
+        """Lowest height of the link's end, with the tube about it above the floor, m."""
+        floor = self.task.floor
+        return -math.inf if floor is None else floor + 0.5 * self.link.diameter
+
+    @property
+    def upturn(self) -> float:
+        """Tightest radius in which every link can turn upright at its end, m; 0 if some are too short."""
+        link = self.link
+        needed = 0.5 * math.pi * link.min_bend_radius + 0.5 * link.diameter
+        return link.min_bend_radius if needed <= link.length.lower else 0.0
+
     def allow_end(self, boxes: Boxes) -> NDArray[np.bool_]:
         """Whether some shape of each box may end within the reach and with P3 and P4 above the floor.
 
@@ -109,6 +122,7 @@ class Limits:
         allowed &= ~known | (value <= radius + SLACK)
         if floor is not None:
             highest = h + boxes.half[:, 1]
+            allowed &= highest >= self.lowest_end - SLACK
             rise = boxes.frame[0][:, 2]
             for along in (-robot.tip_offset, robot.d34 - robot.tip_offset):
                 allowed &= highest + along * rise + abs(along) * np.minimum(boxes.turn, 2.0) >= floor - SLACK
@@ -158,6 +172,11 @@ class Limits:
         moved, turn = boxes.end_radius[:, None], boxes.turn[:, None] + half
         # The link run backwards is a link, too: it starts at p along -t and ends at P2.
         allowed = self.table.upper_bound(across, along) >= -(moved + chord * turn) - SLACK
+        # A link that ends upwards has come from below.
+        rise = np.clip(cos * e1[:, 2, None] + sin * e2[:, 2, None], -1.0, 1.0)
+        flattest = np.minimum(np.arccos(rise) + turn, 0.5 * math.pi)
+        highest = (boxes.middle[:, 1] + boxes.half[:, 1])[:, None]
+        allowed &= highest - self.upturn * (1.0 - np.sin(flattest)) >= self.lowest_end - SLACK
         # Fenchel: no curve bends by less than the turns from its start to its chord to its end.
         away = chord > moved + SLACK
         swing = np.arcsin(np.minimum(moved / np.where(away, chord, 1.0), 1.0))
@@ -187,19 +206,23 @@ class Limits:
         allowed, n = np.ones(len(p), dtype=bool), p
         if self.most_bend < math.pi:
             return allowed
-        for _ in range(_DIRECTIONS):
+        for step in range(_DIRECTIONS):
             n = n / np.maximum(np.linalg.norm(n, axis=-1, keepdims=True), 1e-12)
-            angles, ahead = [], p
-            for direction in (start, t):
-                cosine = np.clip(np.einsum("...i,...i", direction, n), -1.0, 1.0)
-                sine = np.sqrt(1.0 - cosine**2)
-                angles.append(np.arctan2(sine, cosine))
-                sideways = (direction - cosine[:, None] * n) / np.maximum(sine, 1e-6)[:, None]
-                ahead = ahead - r * (sine[:, None] * n + (1.0 - cosine)[:, None] * sideways)
-            first, last = angles[0], np.maximum(angles[1] - turn, 0.0)
+            cosines = [np.clip(np.einsum("...i,...i", direction, n), -1.0, 1.0) for direction in (start, t)]
+            first, last = (np.arctan2(np.sqrt(1.0 - cosine**2), cosine) for cosine in cosines)
+            beside = np.maximum(0.5 * (first + last - self.most_bend), 0.0)
+            # The next direction: where p is no more beside the present one than its bound falls there.
+            falls = r * np.cos(beside) + 0.5 * (longest - r * self.most_bend) * np.sin(beside)
+            ahead = p - (r * (np.sin(first) + np.sin(last) - 2.0 * np.sin(beside)))[:, None] * n
+            for direction, cosine in zip((start, t), cosines, strict=True):
+                sine = np.maximum(np.sqrt(1.0 - cosine**2), 1e-6)
+                ahead -= ((falls - r * cosine) / sine)[:, None] * (direction - cosine[:, None] * n)
+            last = np.maximum(last - turn, 0.0)
             beside = np.maximum(0.5 * (first + last - self.most_bend), 0.0)
             straight = longest - r * (first + last - 2.0 * beside)
             most = r * (np.sin(first) + np.sin(last) - 2.0 * np.sin(beside)) + straight * np.cos(beside)
             allowed &= np.einsum("mi,mi->m", p, n) <= most + moved + SLACK
-            n = ahead
+            # Full steps would go to and fro.
+            ahead /= np.maximum(np.linalg.norm(ahead, axis=-1, keepdims=True), 1e-12)
+            n = ahead if step == 0 else n + ahead
         return allowed

@@ -10,9 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.synthesis.bound.boxes import Boxes
-from synth.synthesis.bound.cells import Cells, Circle, Forms, wrapped
+from synth.synthesis.bound.cells import CELLS, Cells, Grid, wrapped
+from synth.synthesis.bound.forms import Circle
 from synth.synthesis.bound.limits import SLACK, Limits
-from synth.synthesis.bound.linear import combined, multipliers
+from synth.synthesis.bound.merging import grouped
+from synth.synthesis.bound.narrowing import Candidates, Narrowing
+from synth.synthesis.bound.programs import solved
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -20,11 +23,12 @@ if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.task import Task
 
-_CELLS = 64  # of the circle of P5, and of psi, at first: a bit each
 # Boxes in which P5 moves by less than these, m, look at finer cells. Above the first, no affine bound helps.
-_FINER = (0.06, 0.03, 0.006)
+_FINER = (0.2, 0.02, 0.002)
+# Where psi keeps no target from its nearest branch, it is cut only in boxes of which no other side moves P5
+# by this much, m: there the link may forbid it.
+_THIN = 1e-4
 _PARED = 8  # parts of a cell of psi at each end that are looked at one by one
-_ROUNDS = 3  # of cutting a target's cells into two groups
 
 
 class MissBounds:
@@ -47,39 +51,37 @@ class MissBounds:
         second = robot.joint_limits.second
         # joint 2 stands at pi where P5 is at phi = psi
         self.window = max(second.upper - math.pi, math.pi - second.lower) + SLACK
-        self.cells = (2.0 * np.arange(_CELLS) + 1.0) * math.pi / _CELLS - math.pi
-        self.cell_half = math.pi / _CELLS
-        self.bits = np.left_shift(np.uint64(1), np.arange(_CELLS, dtype=np.uint64))
-        within = (
-            np.abs(wrapped(self.cells[:, None] - self.cells)) <= self.window + 2.0 * self.cell_half + SLACK
-        )
-        self.masks = np.where(within, self.bits, np.uint64(0)).sum(axis=1, dtype=np.uint64)
+        self.grid = Grid.of(self.window)
+        self.narrowing = Narrowing(self.circle, self.grid, factors, self.floor)
 
     def evaluate(self, boxes: Boxes, enough: float) -> Boxes:
         """Bound the worst weighted miss in boxes.
 
         Args:
             boxes: The boxes.
-            enough: Boxes in which it is nowhere less than this, m, are dropped.
+            enough: Where it is not less than this, m, boxes are narrowed or dropped.
 
         Returns:
-            The others, with their bounds, and psi narrowed to what the limits allow.
+            What is left of the boxes, with their bounds.
         """
+        boxes = replace(boxes, origin=np.arange(len(boxes)))
         boxes = boxes.take(self.limits.allow_end(boxes))
-        boxes, alive, allowed = self._coarse(boxes, enough)
+        boxes, alive, psi = self._coarse(boxes, enough)
         size = self.circle.moved(boxes)
         parts = [boxes.take(size >= _FINER[0])]
         for cuts, (upper, lower) in enumerate(itertools.pairwise((*_FINER, 0.0))):
             chosen = (size < upper) & (size >= lower)
             if chosen.any():
-                parts.append(self._fine(boxes.take(chosen), alive[chosen], allowed[chosen], enough, cuts))
+                box, target, cell = np.nonzero(self.grid.unpacked(alive[chosen]))
+                cells = Cells(box, target, self.grid.middles[cell], self.grid.half)
+                parts.append(self._fine(Candidates(boxes.take(chosen), cells, psi[chosen]), enough, cuts))
         return Boxes.joined(parts)
 
     def sides(self, boxes: Boxes) -> FloatArray:
         """Return how far each parameter alone moves P5, shape (N, 5), m."""
         scale = np.array([1.0, 1.0, self.circle.arm, self.circle.arm, self.circle.radius])
         sides = boxes.half * scale
-        sides[:, 4] = np.where(boxes.by_psi, sides[:, 4], 0.0)
+        sides[:, 4] = np.where(boxes.by_psi, sides[:, 4], np.minimum(sides[:, 4], _THIN))
         return np.asarray(sides)
 
     def _coarse(self, boxes: Boxes, enough: float) -> tuple[Boxes, NDArray[np.uint64], NDArray[np.bool_]]:
@@ -87,209 +89,78 @@ class MissBounds:
 
         Returns:
             The boxes; the cells in which each target may be near, shape (N, n), a bit each; and the cells
-            of psi that are left, shape (N, K).
+            of psi that are left, shape (N, CELLS).
         """
         u, e1, e2 = boxes.frame
-        cos, sin = np.cos(self.cells)[:, None], np.sin(self.cells)[:, None]
+        grid = self.grid
+        cos, sin = np.cos(grid.middles)[:, None], np.sin(grid.middles)[:, None]
         points = (boxes.end + self.circle.offset * u)[:, None] + self.circle.radius * (
             cos * e1[:, None] + sin * e2[:, None]
         )
         rho, z = np.hypot(points[..., 0], points[..., 1]), points[..., 2]
-        reach = (self.circle.moved(boxes) + 2.0 * self.circle.radius * math.sin(0.5 * self.cell_half))[
-            :, None
-        ]
+        reach = (self.circle.moved(boxes) + 2.0 * self.circle.radius * math.sin(0.5 * grid.half))[:, None]
         above = z + reach >= self.floor - SLACK
         alive = np.empty((len(boxes), len(self.circle.z)), dtype=np.uint64)
         for i, factor in enumerate(self.factors):
             near = (rho - self.circle.rho[i]) ** 2 + (z - self.circle.z[i]) ** 2 <= (
                 reach + enough / factor
             ) ** 2
-            alive[:, i] = np.packbits(near & above, axis=1, bitorder="little").view("<u8")[:, 0]
+            alive[:, i] = grid.packed(near & above)
 
-        allowed = self.limits.allow_direction(boxes, self.cells, self.cell_half)
-        psi, psi_half = boxes.middle[:, 4, None], boxes.half[:, 4, None]
-        allowed &= np.abs(self.cells - psi) <= psi_half + self.cell_half + SLACK
+        psi = self.limits.allow_direction(boxes, grid.middles, grid.half)
+        psi &= np.abs(grid.middles - boxes.middle[:, 4, None]) <= boxes.half[:, 4, None] + grid.half + SLACK
         for i in range(len(self.circle.z)):
-            allowed &= (alive[:, i, None] & self.masks) != 0
-        reachable = np.bitwise_or.reduce(np.where(allowed, self.masks, np.uint64(0)), axis=1)
-        alive &= reachable[:, None]
-        kept = allowed.any(axis=1) & (alive != 0).all(axis=1)
-        boxes, alive, allowed = boxes.take(kept), alive[kept], allowed[kept]
+            psi &= (alive[:, i, None] & grid.masks[0]) != 0
+        alive &= np.bitwise_or.reduce(np.where(psi, grid.masks[0], np.uint64(0)), axis=1)[:, None]
+        kept = psi.any(axis=1) & (alive != 0).all(axis=1)
+        boxes, alive, psi = boxes.take(kept), alive[kept], psi[kept]
         if len(boxes):
-            first, last = np.argmax(allowed, axis=1), _CELLS - 1 - np.argmax(allowed[:, ::-1], axis=1)
-            psi, psi_half = boxes.middle[:, 4], boxes.half[:, 4]
-            lower = np.maximum(psi - psi_half, self.cells[first] - self.cell_half)
-            upper = np.minimum(psi + psi_half, self.cells[last] + self.cell_half)
-            lower, upper = self._pared(boxes, lower, upper)
-            open_ = lower <= upper
+            first, last = np.argmax(psi, axis=1), CELLS - 1 - np.argmax(psi[:, ::-1], axis=1)
+            middle, half = boxes.middle[:, 4], boxes.half[:, 4]
+            lower = np.maximum(middle - half, grid.middles[first] - grid.half)
+            upper = np.minimum(middle + half, grid.middles[last] + grid.half)
+            lower, upper, open_ = self._pared(boxes, lower, upper)
             boxes = boxes.with_psi(lower, np.maximum(lower, upper)).take(open_)
-            alive, allowed = alive[open_], allowed[open_]
-        return boxes, alive, allowed
+            alive, psi = alive[open_], psi[open_]
+        return boxes, alive, psi
 
-    def _pared(self, boxes: Boxes, lower: FloatArray, upper: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return psi from `lower` to `upper`, less what the link forbids at both ends."""
-        width = np.minimum(2.0 * self.cell_half, upper - lower) / _PARED
+    def _pared(
+        self, boxes: Boxes, lower: FloatArray, upper: FloatArray
+    ) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
+        """Return psi from `lower` to `upper`, less what the link forbids at both ends, and if any is left."""
+        cell = 2.0 * self.grid.half
+        width = np.minimum(cell, upper - lower) / _PARED
         steps = np.arange(_PARED)
         below = lower[:, None] + (steps + 0.5) * width[:, None]
         above = upper[:, None] - (steps + 0.5) * width[:, None]
         allowed = self.limits.allow_direction(boxes, np.hstack([below, above]), 0.5 * width[:, None])
         cut = np.logical_and.accumulate(~allowed[:, :_PARED], axis=1).sum(axis=1)
         cut_above = np.logical_and.accumulate(~allowed[:, _PARED:], axis=1).sum(axis=1)
-        return lower + cut * width, upper - cut_above * width
+        # A narrow interval is covered by its parts, one without width by each of them.
+        left = allowed.any(axis=1) | (upper - lower > cell)
+        lower, upper = lower + cut * width, upper - cut_above * width
+        return lower, upper, left & (lower <= upper)
 
-    def _fine(
-        self,
-        boxes: Boxes,
-        alive: NDArray[np.uint64],
-        allowed: NDArray[np.bool_],
-        enough: float,
-        cuts: int,
-    ) -> Boxes:
+    def _fine(self, candidates: Candidates, enough: float, cuts: int) -> Boxes:
         """Bound the worst weighted miss in small boxes by affine functions."""
-        box, target, cell = np.nonzero((alive[:, :, None] & self.bits) != 0)
-        candidates = Cells(box, target, self.cells[cell], self.cell_half)
-        forms, kept = self._near(boxes, candidates, enough)
+        candidates = self.narrowing.narrowed(candidates, enough)
         for _ in range(cuts):
-            forms, kept = self._near(boxes, kept.cut(), enough)
-        held = np.zeros((len(boxes), len(self.circle.z)), dtype=bool)
-        held[kept.box, kept.target] = True
-        full = np.asarray(held.all(axis=1))
-        chosen = full[kept.box]
-        boxes, kept, forms = boxes.take(full), kept.take(chosen), forms.take(chosen)
+            candidates = self.narrowing.narrowed(candidates.cut(), enough)
+        candidates, forms = self.narrowing.near(candidates, enough)
+        boxes, cells, n = candidates.boxes, candidates.cells, len(self.factors)
         if not len(boxes):
             return boxes
-        kept = Cells((np.cumsum(full) - 1)[kept.box], kept.target, kept.phi, kept.half)
-        return self._combine(boxes, kept, forms, allowed[full], enough)
-
-    def _near(self, boxes: Boxes, cells: Cells, enough: float) -> tuple[Forms, Cells]:
-        """Return the affine bounds of each cell, those aside that show it to be far from its target."""
-        forms = self.circle.forms(boxes, cells)
-        near = forms.least() <= enough / self.factors[cells.target]
-        theta = np.abs(wrapped(cells.phi - boxes.middle[cells.box, 4]))
-        near &= theta <= self.window + boxes.half[cells.box, 4] + cells.half + SLACK
-        near &= forms.highest >= self.floor - SLACK
-        return forms.take(near), cells.take(near)
-
-    def _combine(
-        self, boxes: Boxes, cells: Cells, forms: Forms, allowed: NDArray[np.bool_], enough: float
-    ) -> Boxes:
-        """Return the boxes that are left, with the best bound from the affine bounds of all their cells."""
-        count, n = len(boxes), len(self.circle.z)
-        key = cells.box * n + cells.target
-        starts = np.flatnonzero(np.concatenate([[True], key[1:] != key[:-1]]))
-        sizes = np.diff(np.concatenate([starts, [len(key)]]))
-        nearest = np.lexsort((forms.distance, key))[starts]
-        all_values, all_slopes, loss = self._merged(boxes, cells, forms, nearest, starts, sizes)
-        other = np.lexsort((loss, key))[starts]
-        to_nearest = np.abs(forms.slopes - np.repeat(forms.slopes[:, nearest], sizes, axis=1)).sum(
-            axis=(0, 2)
-        )
-        to_other = np.abs(forms.slopes - np.repeat(forms.slopes[:, other], sizes, axis=1)).sum(axis=(0, 2))
-        first = to_nearest <= to_other
-        variants = [(all_values, all_slopes)]
-        for reference, group in ((nearest, first), (other, ~first)):
-            variants.append(self._merged(boxes, cells, forms, reference, starts, sizes, group)[:2])
-        values = np.stack([value for value, _ in variants]) * self.factors[:, None]
-        slopes = np.stack([slope for _, slope in variants]) * self.factors[:, None, None]
-        single = np.minimum.reduceat(forms.least(), starts).reshape(count, n) * self.factors
-        bounds = np.maximum(self._programs(boxes, values, slopes, enough), single.max(axis=1))
-
-        around = np.abs(wrapped(cells.phi[nearest].reshape(count, n, 1) - self.cells)).max(axis=1)
-        by_psi = ~((around <= self.window) & allowed).any(axis=1)
-        boxes = replace(boxes, bound=np.maximum(boxes.bound, bounds), by_psi=by_psi)
-        return boxes.take(bounds < enough)
-
-    def _merged(
-        self,
-        boxes: Boxes,
-        cells: Cells,
-        forms: Forms,
-        reference: NDArray[np.intp],
-        starts: NDArray[np.intp],
-        sizes: NDArray[np.intp],
-        group: NDArray[np.bool_] | None = None,
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return affine bounds, with the slopes of a reference cell, that hold for all cells of a target.
-
-        Args:
-            boxes: N boxes.
-            cells: Their C candidates.
-            forms: The bounds of these.
-            reference: A candidate of each box and target, shape (N n,).
-            starts: The first candidate of each box and target, shape (N n,).
-            sizes: How many there are of each, shape (N n,).
-            group: Which candidates count, shape (C,); all by default.
-
-        Returns:
-            Values, shape (N, n, 2), infinite where no candidate counts; slopes, shape (N, n, 2, 5); and what
-            each candidate allows the values to be, summed over both sides, shape (C,).
-        """
-        count, n = len(boxes), len(self.circle.z)
-        psi_half = boxes.half[cells.box, 4]
-        theta = wrapped(cells.phi - boxes.middle[cells.box, 4])
-        edge = self.window + psi_half
-        values, slopes, allowed = np.empty((count, n, 2)), np.empty((count, n, 2, 5)), np.zeros(len(theta))
-        for side in range(2):
-            rate = forms.along_cell[side]
-            # A target that would rather have joint 2 beyond its limit follows psi.
-            limit = np.where(rate < 0.0, self.window, -self.window)
-            held = (np.sign(limit) * theta > edge - 3.0 * cells.half) & (edge + 2.0 * cells.half < math.pi)
-            follow = np.repeat(np.where(held, rate, 0.0)[reference], sizes)
-            limit = np.repeat(limit[reference], sizes)
-            change = forms.slopes[side] - np.repeat(forms.slopes[side][reference], sizes, axis=0)
-            value = forms.values[side] - np.abs(change).sum(axis=1)
-            value -= np.abs(rate - follow) * cells.half + np.abs(rate) * cells.half**3 / 6.0
-            value -= follow * (theta - limit)
-            allowed += value
-            if group is not None:
-                value = np.where(group, value, np.inf)
-            values[..., side] = np.minimum.reduceat(value, starts).reshape(count, n)
-            slopes[..., side, :4] = forms.slopes[side][reference].reshape(count, n, 4)
-            slopes[..., side, 4] = follow[starts].reshape(count, n) * boxes.half[:, 4, None]
-        return values, slopes, allowed
-
-    def _programs(self, boxes: Boxes, values: FloatArray, slopes: FloatArray, enough: float) -> FloatArray:
-        """Return lower bounds from linear programs, target after target cut into its two groups of cells.
-
-        Args:
-            boxes: N boxes.
-            values: Of all cells of each target, and of both groups, shape (3, N, n, 2), m.
-            slopes: Likewise, shape (3, N, n, 2, 5), m.
-            enough: No more is needed, m.
-
-        Returns:
-            Shape (N,), m.
-        """
-        count, n = len(boxes), len(self.circle.z)
+        values, slopes, nearest = grouped(candidates, forms, n, self.window)
+        values, slopes = values * self.factors[:, None], slopes * self.factors[:, None, None]
         cut, cut_slope, known = self.limits.length_cut(boxes)
-        cuts = np.where(known, cut, -1.0)[:, None]
-        cut_slopes = np.zeros((count, 1, 5))
+        cut_slopes = np.zeros((len(boxes), 1, 5))
         cut_slopes[:, 0, :2] = np.where(known[:, None], cut_slope, 0.0) * boxes.half[:, :2]
+        bounds, lower, upper = solved(values, slopes, np.where(known, cut, -1.0)[:, None], cut_slopes, enough)
+        single = np.minimum.reduceat(forms.least(), cells.starts(n)).reshape(len(boxes), n) * self.factors
+        bounds = np.maximum(bounds, single.max(axis=1))
 
-        owner, taken = np.arange(count), np.zeros((count, n), dtype=np.intp)
-        targets = np.arange(n)
-        final = np.full(count, np.inf)
-        before = np.zeros(count)
-        for round_ in range(_ROUNDS + 1):
-            value = values[taken, owner[:, None], targets].reshape(len(owner), 2 * n)
-            slope = slopes[taken, owner[:, None], targets].reshape(len(owner), 2 * n, 5)
-            empty = np.isinf(value).any(axis=1)  # of a group without cells
-            value[empty] = enough
-            programs = (value, slope, cuts[owner], cut_slopes[owner])
-            weights = multipliers(*programs)
-            bound = np.maximum(combined(*programs, *weights)[2], before)
-            # What both groups apart allow more than together, as far as it weighs.
-            weight = weights[0].reshape(len(owner), n, 2)
-            apart = np.minimum(values[1, owner], values[2, owner]) - values[0, owner]
-            gain = np.where(taken == 0, (weight * np.minimum(apart, 1.0)).sum(axis=2), 0.0)
-            best = np.argmax(gain, axis=1)
-            rows = np.arange(len(owner))
-            more = (bound < enough) & ~empty & (gain[rows, best] > 0.0) & (round_ < _ROUNDS)
-            done = ~more & ~empty
-            np.minimum.at(final, owner[done], bound[done])
-            if not more.any():
-                break
-            owner, before = np.repeat(owner[more], 2), np.repeat(bound[more], 2)
-            taken, best = np.repeat(taken[more], 2, axis=0), np.repeat(best[more], 2)
-            taken[np.arange(len(owner)), best] = np.tile([1, 2], len(owner) // 2)
-        return np.asarray(final)
+        around = np.abs(wrapped(cells.phi[nearest].reshape(len(boxes), n, 1) - self.grid.middles)).max(axis=1)
+        by_psi = ~((around <= self.window) & candidates.psi).any(axis=1)
+        boxes = replace(boxes, bound=np.maximum(boxes.bound, bounds), by_psi=by_psi)
+        left = (bounds < enough) & (lower <= upper).all(axis=1)
+        return boxes.take(left).narrowed(lower[left], upper[left])

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.geometry import SweptCircle
 from synth.synthesis.bound.cells import wrapped
+from synth.synthesis.bound.ends import LinkEnd
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
@@ -20,7 +20,7 @@ _SMALL = 0.01  # m: P5 moves by less in boxes that are looked at
 _APART = 0.05  # m: what is as near to a shape tried before is not tried
 _TRIES = 6
 _ANGLES = np.linspace(-np.pi, np.pi, 721)
-_PSI = np.linspace(-1.0, 1.0, 9)
+_PSI = np.linspace(-1.0, 1.0, 17)
 
 
 @dataclass
@@ -35,8 +35,8 @@ class Promising:
     bounds: MissBounds
     tried: FloatArray = field(default_factory=lambda: np.empty((0, 6)))
 
-    def circle(self, boxes: Boxes, better_than: float) -> SweptCircle | None:
-        """Return the circle of P5 of the best middle, if it is better than a miss, m, and new."""
+    def end(self, boxes: Boxes, better_than: float) -> LinkEnd | None:
+        """Return how the best middle ends, if it is better than a miss, m, and new."""
         if len(self.tried) >= _TRIES or not len(boxes):
             return None
         small = np.flatnonzero((self.bounds.circle.moved(boxes) < _SMALL) & (boxes.bound < better_than))
@@ -45,16 +45,19 @@ class Promising:
         few = boxes.take(small[np.argsort(boxes.bound[small], kind="stable")[:_LOOKED_AT]])
         rows = np.hstack([few.end, self.bounds.circle.arm * few.frame[0]])
         apart = np.linalg.norm(rows[:, None] - self.tried, axis=-1).min(axis=1, initial=np.inf)
-        misses = np.where(apart > _APART, self._misses(few), np.inf)
+        misses, psi = self._misses(few)
+        misses[apart <= _APART] = np.inf
         best = int(np.argmin(misses))
         if misses[best] >= better_than:
             return None
         self.tried = np.vstack([self.tried, rows[best]])
-        axis = few.frame[0][best]
-        return SweptCircle(few.end[best] + self.bounds.circle.offset * axis, axis, self.bounds.circle.radius)
+        u, e1, e2 = (axis[best] for axis in few.frame)
+        t = np.cos(psi[best]) * e1 + np.sin(psi[best]) * e2
+        d12 = self.bounds.limits.task.robot.d12
+        return LinkEnd(few.end[best] - np.array([0.0, 0.0, d12]), np.stack([u, np.cross(t, u), t], axis=-1))
 
-    def _misses(self, boxes: Boxes) -> FloatArray:
-        """Return about the worst weighted miss of the middles of boxes at the best psi, shape (N,), m."""
+    def _misses(self, boxes: Boxes) -> tuple[FloatArray, FloatArray]:
+        """Return about the worst weighted misses of middles at the best psi, m, and that, shape (N,) each."""
         bounds = self.bounds
         u, e1, e2 = (direction[:, None] for direction in boxes.frame)
         cos, sin = np.cos(_ANGLES)[:, None], np.sin(_ANGLES)[:, None]
@@ -62,10 +65,12 @@ class Promising:
         rho, z = np.hypot(points[..., 0], points[..., 1])[..., None], points[..., 2, None]
         off = np.hypot(rho - bounds.circle.rho, z - bounds.circle.z) * bounds.factors
         off[points[..., 2] < bounds.floor] = np.inf
-        worst = np.full(len(boxes), np.inf)
-        for part in _PSI:
-            psi = boxes.middle[:, 4] + part * boxes.half[:, 4]
-            within = np.abs(wrapped(_ANGLES - psi[:, None])) <= bounds.window
+        psi = boxes.middle[:, 4, None] + _PSI * boxes.half[:, 4, None]
+        allowed = bounds.limits.allow_direction(boxes, psi, 0.0)
+        worst, best = np.full(len(boxes), np.inf), boxes.middle[:, 4].copy()
+        for angle, possible in zip(psi.T, allowed.T, strict=True):
+            within = (np.abs(wrapped(_ANGLES - angle[:, None])) <= bounds.window) & possible[:, None]
             at_psi = np.where(within[..., None], off, np.inf).min(axis=1).max(axis=1)
+            best = np.where(at_psi < worst, angle, best)
             worst = np.minimum(worst, at_psi)
-        return worst
+        return worst, best

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.synthesis.bound.boxes import Boxes
+from synth.synthesis.bound.limits import SLACK
 from synth.synthesis.bound.misses import MissBounds
 from synth.synthesis.bound.promising import Promising
 from synth.synthesis.impossibility import longest_rigid_link
@@ -19,12 +20,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
-    from synth.geometry import SweptCircle
+    from synth.synthesis.bound.ends import LinkEnd
     from synth.task import Task
 
 # Taken off every bound, m for each metre of the robot's size: see "Rounding" in docs/bound.md.
 _ROUNDING = 1e-9
-_BATCH = 2048
+_BATCH = 512
 _BOXES_AT_MOST = 2_000_000  # open at a time, some 200 bytes each
 # Bounds from this many of the targets hold for all of them.
 _TARGETS = 12
@@ -79,7 +80,7 @@ def prove(
     tightest: float,
     gap: float = 1e-4,
     stop: Callable[[], bool],
-    improve: Callable[[SweptCircle], float] | None = None,
+    improve: Callable[[LinkEnd], float] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Bound | None:
     """Bound the worst weighted miss over all shapes that the hardware allows from below.
@@ -94,8 +95,8 @@ def prove(
         tightest: The tightest tolerance: a miss counts by it over its target's tolerance, m.
         gap: The proof ends when the bound is as near as this to `best_found`, m.
         stop: Asked many times a second; when it says yes, the bound so far is returned.
-        improve: Looks for a shape with about the workspace of a circle that promises less than the best
-            found, and returns the worst weighted miss of the best shape now, m.
+        improve: Looks for a shape whose link ends about so, which promises less than the best found, and
+            returns the worst weighted miss of the best shape now, m.
         progress: Told the bound so far, m.
 
     Returns:
@@ -116,8 +117,7 @@ def prove(
     bounds = MissBounds(task, chosen, factors[chosen])
     link, d12 = bounds.limits.link, task.robot.d12
     lowest = d12 - link.length.upper
-    if task.floor is not None:
-        lowest = max(lowest, task.floor - abs(task.robot.tip_offset) - task.robot.d34)
+    lowest = max(lowest, bounds.limits.lowest_end - SLACK)
     boxes = Boxes.cover(link.length.upper, (min(lowest, d12), d12 + link.length.upper))
     promising = Promising(bounds)
     count, lower = 0, 0.0
@@ -130,9 +130,9 @@ def prove(
         left = bounds.evaluate(halves, enough)
         boxes = Boxes.joined([boxes.take(~first), left])
         count += len(halves)
-        circle = promising.circle(left, enough) if improve is not None else None
-        if circle is not None and improve is not None:
-            best_found = min(best_found, improve(circle))
+        end = promising.end(left, enough) if improve is not None else None
+        if end is not None and improve is not None:
+            best_found = min(best_found, improve(end))
             enough = min(enough, best_found - wanted)
             boxes = boxes.take(boxes.bound < enough)
         lower = min(float(boxes.bound.min(initial=enough)), enough)
