@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from planted import out_of_reach, planted_task
 
-from synth.robot import BasePose
+from synth.robot import BasePose, LinkShape
 from synth.synthesis import Status, solve
 
 
@@ -34,12 +34,13 @@ def test_a_neighbour_is_found_in_one_start_and_again_alike(neighbour):
     assert same(solution, solve(task, warm_start=neighbour))
 
 
-def test_a_neighbour_of_a_task_with_a_present_shape_is_followed_though_its_link_is_of_finer_arcs(neighbour):
-    task = replace(neighbour.task, current=neighbour.robot.shape)
-    turned = replace(task, current=planted_task(1, 4)[1].shape)
-    near = solve(turned)
-    assert len(near.robot.shape.lengths) > len(neighbour.robot.shape.lengths)
-    assert solve(moved(task, 0.003), warm_start=near).found
+def test_a_neighbour_whose_link_is_of_finer_arcs_is_followed_too(neighbour):
+    arm = neighbour.robot
+    finer = LinkShape(np.repeat(arm.shape.curvatures, 3, axis=0), np.repeat(arm.shape.lengths / 3.0, 3))
+    design = replace(neighbour.best, arm=replace(arm, shape=finer))
+    solution = solve(moved(neighbour.task, 0.003), warm_start=replace(neighbour, designs=(design,)))
+    assert solution.found
+    assert solution.starts == 1
 
 
 def test_targets_and_base_that_move_together_keep_the_shape(neighbour):
