@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _AT_LIMIT = 1e-9
 _EQUAL = 1e-12  # of the whole length
 _TINY = 1e-300
-_LEAST_RADIUS = 1e-9  # m; with P3, P4, P5 in line the radius has no derivative
+_LEAST_RADIUS = 1e-3  # m; with P3, P4, P5 in line the radius has no derivative
 ARCS = 4  # equal arcs of a link: eight curvatures and a length for the five numbers of an end pose
 
 

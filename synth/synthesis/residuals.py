@@ -58,6 +58,11 @@ class Residuals:
             1.0,
         )
 
+    @property
+    def width(self) -> int:
+        """How many numbers move an end and its circle: 6, or 8 where the rigid link is free."""
+        return 6 if self._circle is None else 8
+
     def following(self, moved: FloatArray) -> FloatArray:
         """Return how far joint 2 follows the link's ends, to first order, shape (N, n), rad.
 

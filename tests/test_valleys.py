@@ -1,0 +1,92 @@
+"""The search among valleys: that it finds better ones, knows when it is enough, and repeats itself."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from planted import ROBOT, planted_task
+from test_refinement import noisy
+
+from synth.synthesis.population import Population
+from synth.synthesis.refinement import Refined
+from synth.synthesis.screening import starts
+from synth.synthesis.valleys import Valleys
+
+
+def never():
+    return False
+
+
+def drawn(seed, count=40):
+    return Population.sample(ROBOT, count, np.random.default_rng(seed))
+
+
+def explored(task, seed, stop=never, count=40):
+    rng = np.random.default_rng(seed)
+    valleys = Valleys.of(task, drawn(seed, count))
+    return valleys, valleys.explored(task, lambda: Population.sample(ROBOT, 40, rng), rng, stop)
+
+
+def valleys_of(*costs, drawn):
+    """Valleys in which fresh shapes ended with these root mean squared misses, m."""
+    count = len(costs)
+    shapes = Population.sample(ROBOT, count, np.random.default_rng(0))
+    refined = Refined(shapes, np.zeros((count, 1, 2)), np.square(costs))
+    return Valleys(refined, refined.cost, drawn)
+
+
+def test_valleys_are_agreed_upon_when_a_share_of_the_fresh_shapes_ended_in_the_best():
+    same = [0.02] * 5
+    assert valleys_of(*same, *[0.03] * 95, drawn=100).agreed
+    assert not valleys_of(*same, *[0.03] * 95, drawn=200).agreed
+    assert not valleys_of(0.019, *same, *[0.03] * 94, drawn=100).agreed
+    assert valleys_of(*[1e-7] * 5, *[0.03] * 95, drawn=1000).agreed
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_exploring_never_loses_the_best_and_is_the_same_again(seed):
+    task = noisy(seed, count=10)
+    before, after = explored(task, seed)
+    assert after.best.cost.min() <= before.best.cost.min()
+    assert after.drawn >= before.drawn
+    assert np.array_equal(explored(task, seed)[1].best.cost, after.best.cost)
+
+
+def test_exploring_finds_better_valleys_than_a_few_shapes_do():
+    ratios = []
+    for seed in range(4):
+        before, after = explored(noisy(seed, count=14), seed, count=4)
+        ratios.append(np.sqrt(after.best.cost.min() / before.best.cost.min()))
+    assert np.mean(ratios) < 0.97
+
+
+def test_exploring_ends_when_it_is_told_to():
+    before, after = explored(noisy(0, count=14), 0, stop=lambda: True)
+    assert after.drawn == before.drawn
+    assert after.best.cost.min() == before.best.cost.min()
+
+
+def test_starts_are_distinct_the_best_first_and_agreed_upon_in_the_end():
+    found = list(starts(noisy(1, count=12), 0))
+    assert found[-1].agreed
+    first = [start for start in found if not start.agreed] or found
+    costs = [start.cost for start in first]
+    assert costs == sorted(costs)
+    assert len({start.arm.shape.curvatures.tobytes() for start in found}) == len(found)
+    misses = [np.mean(start.arm.closest_joints(noisy(1, count=12).positions)[1] ** 2) for start in first]
+    assert np.all(np.array(costs) >= np.array(misses) * (1.0 - 1e-6))
+
+
+def test_starts_of_many_targets_state_their_cost_for_all_of_them():
+    task = noisy(2, count=60)
+    start = next(starts(task, 0))
+    assert start.joints.shape == (60, 2)
+    assert np.isclose(start.cost, np.mean(start.arm.closest_joints(task.positions)[1] ** 2), rtol=1e-9)
+
+
+def test_quick_starts_are_those_of_the_first_step():
+    task = replace(planted_task(3, 5)[0], floor=None)
+    quick, whole = list(starts(task, 0, quick=True)), list(starts(task, 0))
+    for one, other in zip(quick, whole, strict=False):
+        assert np.array_equal(one.arm.shape.curvatures, other.arm.shape.curvatures)
+    assert len(quick) <= len(whole)
