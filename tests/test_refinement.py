@@ -20,10 +20,10 @@ FREE = replace(
 STEP = 1e-6
 
 
-def noisy(seed, count=8, robot=ROBOT, **changes):
+def noisy(seed, count=8, robot=ROBOT, noise=0.02, **changes):
     task, _ = planted_task(seed, count)
-    noise = np.random.default_rng(seed).normal(scale=0.02, size=(count, 3))
-    targets = [PointTarget(t.name, t.position + n, 0.5e-3) for t, n in zip(task.targets, noise, strict=True)]
+    shifts = np.random.default_rng(seed).normal(scale=noise, size=(count, 3))
+    targets = [PointTarget(t.name, t.position + n, 0.5e-3) for t, n in zip(task.targets, shifts, strict=True)]
     return Task("noisy", robot, tuple(targets), floor=None, **changes)
 
 

@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.task import Task
 
-# Steps of each kind, shapes kept of those that miss differently, and children of each.
-_ROUNDS, _PARENTS, _CHILDREN = 10, 20, 10
-_KEPT = 400
+# Rounds of the three steps; shapes that are kept; of these the parents, which miss differently, and children of
+# each.
+_ROUNDS, _KEPT, _PARENTS, _CHILDREN = 10, 400, 20, 10
 # Sizes of the bends, in units of the largest curvature; lengths change by a twentieth of that, m.
 _SIZES, _LENGTHS = (0.03, 0.1, 0.3), 0.05
 _MOST_SWAPPED = 2  # targets that get another angle of joint 2
@@ -41,10 +41,10 @@ _MOST_SWAPPED = 2  # targets that get another angle of joint 2
 # best quarter of which goes on.
 _BENT, _SWAPPED, _FRESH = 10, (4, 8), (5, 15)
 _GO_ON = 4
-# So many shapes with mean squared misses below this, m^2, end the search, of those with obstacles;
-# those that differ by less than this part are alike.
-_ENOUGH, _EXACT, _ALIKE = 5, 1e-10, 0.01
-# Such a share of the fresh starts must end within this part of the least mean squared miss.
+_ALIKE = 0.01  # costs that differ by less than this part are those of one valley, bent in several ways
+# It is enough if so many shapes meet all targets, their costs below this, m^2; or if such a share of the
+# fresh shapes, and so many of them, ended within this part of the least cost.
+_ENOUGH, _EXACT = 5, 1e-10
 _AGREEING, _SAME = 0.05, 1e-3
 
 
@@ -70,14 +70,13 @@ class Valleys:
 
     @property
     def agreed(self) -> bool:
-        """Whether the best valley is known by so many fresh starts that there hardly is a better one.
-
-        Or there are shapes that meet all targets: enough, if there are obstacles that more is to be known of.
+        """Whether so many shapes meet all targets, or so many fresh ones ended in the best valley, that there
+        hardly is a better one.
         """
         if np.count_nonzero(self.best.cost < _EXACT) >= _ENOUGH:
             return True
         agreeing = np.count_nonzero(self.fresh <= (1.0 + _SAME) * self.best.cost.min())
-        return bool(agreeing >= _AGREEING * self.drawn)
+        return bool(agreeing >= max(_AGREEING * self.drawn, _ENOUGH))
 
     def explored(
         self, task: Task, draw: Callable[[], Population], rng: np.random.Generator, stop: Callable[[], bool]
