@@ -31,8 +31,7 @@ if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.task import Task
 
-# Rounds of the three steps; shapes that are kept; of these the parents, which miss differently, and children of
-# each.
+# Rounds of the three steps; shapes kept; of these the parents, which miss differently, and children of each.
 _ROUNDS, _KEPT, _PARENTS, _CHILDREN = 10, 400, 20, 10
 # Sizes of the bends, in units of the largest curvature; lengths change by a twentieth of that, m.
 _SIZES, _LENGTHS = (0.03, 0.1, 0.3), 0.05
@@ -70,9 +69,7 @@ class Valleys:
 
     @property
     def agreed(self) -> bool:
-        """Whether so many shapes meet all targets, or so many fresh ones ended in the best valley, that there
-        hardly is a better one.
-        """
+        """Whether so many shapes meet all targets, or agree upon the best valley, that none is likely better."""
         if np.count_nonzero(self.best.cost < _EXACT) >= _ENOUGH:
             return True
         agreeing = np.count_nonzero(self.fresh <= (1.0 + _SAME) * self.best.cost.min())
