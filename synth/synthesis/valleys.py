@@ -69,7 +69,7 @@ class Valleys:
 
     @property
     def agreed(self) -> bool:
-        """Whether so many shapes meet all targets, or agree upon the best valley, that none is likely better."""
+        """Whether enough shapes meet all targets, or enough fresh ones ended in the best valley."""
         if np.count_nonzero(self.best.cost < _EXACT) >= _ENOUGH:
             return True
         agreeing = np.count_nonzero(self.fresh <= (1.0 + _SAME) * self.best.cost.min())
