@@ -1,0 +1,154 @@
+"""The program itself: what is unknown, what shall be least, and how a start is polished.
+
+"Gamma passes through the targets" is not written as Gamma = 0. In three of the four categories Gamma
+is a perfect square, so it vanishes together with its gradient and no constraint qualification holds.
+The program is lifted instead: each target keeps its joint angles and its miss as unknowns, tied by
+
+    P5(theta1, theta2; end of the link) - target = miss,
+
+which is the same surface (Gamma = 0 where the miss is zero) and is regular for every shape.
+
+Unknowns, in metres and radians but for the curvatures, which are in units of the largest one:
+
+    curvature   (kx, ky) of each of the equal arcs             2 m
+    length      of the link                                    1
+    s           s13, s14, s23, s24                             4
+    rigid       s35, s45, and the circle of P5, where free     0 or 4
+    joints      theta1, theta2 of each target                  2 n
+    miss        vector from each target to P5                  3 n
+    overlap     depth in obstacles allowed at each target      n + 1, where planes are given
+    worst       largest weighted (miss / tolerance)^2          1, for the minimax objective
+
+Objective: the weighted (miss / tolerance)^2, summed or worst, plus a small multiple of the bending
+energy, which chooses the gentlest among the shapes that miss alike. Overlaps cost more than any miss.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import casadi as ca
+import numpy as np
+
+from synth.synthesis.nlp.arm import SymbolicArm
+from synth.synthesis.nlp.blocks import Constraints, Unknowns
+from synth.synthesis.nlp.ipopt import Ipopt
+from synth.synthesis.nlp.packing import pack, unpack
+from synth.task import Objective
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from synth.arrays import FloatArray
+    from synth.robot import Arm
+    from synth.synthesis.nlp.structure import Structure
+    from synth.synthesis.separation import Separation
+    from synth.task import Task
+
+# The weight of r * (bending energy) against squared misses in units of the tolerance. It shifts a
+# miss by about 1e-6 of the tolerance: invisible, and yet it settles every free direction.
+_GENTLENESS = 1e-4
+# An overlap costs as much as the last bit of a miss of this size, m; it is measured in units of this
+# length, m, because the solver scales the objective down by its steepest slope.
+_LARGE_MISS = 0.01
+_OVERLAP_UNIT = 1e-3
+
+
+@dataclass(frozen=True)
+class NlpAnswer:
+    """Where the solver stopped. A claim only: the verification decides what it is worth.
+
+    Attributes:
+        arm: The robot in the shape found.
+        joints: Its joint angles for each target, shape (n, 2), rad.
+        status: The solver's own word for how it ended.
+        iterations: How many iterations it took.
+    """
+
+    arm: Arm
+    joints: FloatArray
+    status: str
+    iterations: int
+
+
+@lru_cache(maxsize=16)
+def shared_nlp(structure: Structure, arcs: int, near: bool, thread: int) -> SynthesisNlp:
+    """Return the program of a structure, without planes: to build it takes as long as three solves.
+
+    A solver holds the iterates of its run, and two threads in one solver crash the interpreter. So the
+    calling thread, `threading.get_ident()`, is part of the key: each thread has programs of its own.
+    Nothing is remembered from one solve to the next; it only saves the time to build the same again.
+    """
+    del thread
+    return SynthesisNlp(structure, arcs, near=near)
+
+
+class SynthesisNlp:
+    """The program of tasks of one structure, built once and solved from many starts.
+
+    Args:
+        structure: What the tasks have in common.
+        arcs: Number m of equal arcs of the link, a divisor of PIECES.
+        planes: What keeps the arm apart from obstacles and from itself.
+        near: Whether it starts near the answer, as from the solution of a neighbour.
+    """
+
+    def __init__(
+        self, structure: Structure, arcs: int, planes: Sequence[Separation] = (), *, near: bool = False
+    ) -> None:
+        count = structure.count
+        self._arcs = arcs
+        self._overlaps = len(planes) and count + 1
+        x, g = Unknowns(), Constraints()
+        positions = ca.SX.sym("positions", count, 3)
+        weights = ca.SX.sym("weights", count)  # over the squared tolerances
+        floor = ca.SX.sym("floor")
+        steepest = ca.SX.sym("steepest")
+
+        arm = SymbolicArm(structure, arcs, floor, x, g)
+        miss = x.new("miss", (count, 3), -math.inf, math.inf)
+        g.zero(arm.p5 - positions - miss)
+        arm.keep_end_effector_above_floor()
+        overlap = x.new("overlap", (self._overlaps, 1), 0.0, math.inf)
+        for plane in planes:
+            arm.keep_apart(plane, _OVERLAP_UNIT * overlap[plane.target])  # ANY_TARGET is the last
+
+        weighted = ca.sum2(miss**2) * weights
+        if structure.objective is Objective.MINIMAX:
+            misses = x.new("worst", (1, 1), 0.0, math.inf)
+            g.between(weighted - misses, -math.inf, 0.0)
+        else:
+            misses = ca.sum1(weighted)
+        objective = misses + _GENTLENESS * arm.bending_energy + steepest * ca.sum1(overlap)
+        parameters = ca.vertcat(ca.vec(positions), weights, floor, steepest)
+        self._ipopt = Ipopt(x, g, parameters, objective, near=near, nearly_clear=bool(planes))
+
+    def solve(
+        self, task: Task, start: Arm, joints: FloatArray, stop: Callable[[], bool] | None = None
+    ) -> NlpAnswer:
+        """Polish a shape.
+
+        Args:
+            task: The task, of this structure.
+            start: The robot in a shape of `arcs` equal arcs.
+            joints: Joint angles for each target to start from, shape (n, 2), rad.
+            stop: Asked once an iteration; when it says yes, the solver ends with what it has.
+
+        Returns:
+            Where the solver stopped, whether or not that is any good.
+
+        Raises:
+            SolverError: The solver broke down without an answer.
+            KeyboardInterrupt: The user interrupted the solver (which swallows the exception).
+        """
+        weights = task.weights / task.tolerances**2
+        floor, steepest = task.floor or 0.0, 2.0 * _LARGE_MISS * _OVERLAP_UNIT * float(weights.max())
+        parameters = np.concatenate([task.positions.T.ravel(), weights, [floor, steepest]])
+        values, status, iterations = self._ipopt.solve(
+            pack(task, start, joints, self._overlaps), parameters, stop
+        )
+        arm, found_joints = unpack(task, values, self._arcs)
+        return NlpAnswer(arm, found_joints, status, iterations)
