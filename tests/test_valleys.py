@@ -24,7 +24,7 @@ def drawn(seed, count=40):
 def explored(task, seed, stop=never, count=40):
     rng = np.random.default_rng(seed)
     valleys = Valleys.of(task, drawn(seed, count))
-    return valleys, valleys.explored(task, lambda: Population.sample(ROBOT, 40, rng), rng, stop)
+    return valleys, valleys.explored(lambda: Population.sample(ROBOT, 40, rng), rng, stop)
 
 
 def valleys_of(*costs, drawn):
@@ -32,7 +32,7 @@ def valleys_of(*costs, drawn):
     count = len(costs)
     shapes = Population.sample(ROBOT, count, np.random.default_rng(0))
     refined = Refined(shapes, np.zeros((count, 1, 2)), np.square(costs))
-    return Valleys(refined, refined.cost, drawn)
+    return Valleys(noisy(0, count=1), refined, refined.cost, drawn)
 
 
 def test_valleys_are_agreed_upon_when_a_share_of_the_fresh_shapes_ended_in_the_best():
@@ -41,6 +41,8 @@ def test_valleys_are_agreed_upon_when_a_share_of_the_fresh_shapes_ended_in_the_b
     assert not valleys_of(*same, *[0.03] * 95, drawn=200).agreed
     assert not valleys_of(0.019, *same, *[0.03] * 94, drawn=100).agreed
     assert valleys_of(*[1e-7] * 5, *[0.03] * 95, drawn=1000).agreed
+    # Where hardly anything is missed there may be another sheet on which nothing is.
+    assert not valleys_of(*[1e-3] * 100, drawn=100).agreed
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -66,15 +68,15 @@ def test_exploring_ends_when_it_is_told_to():
     assert after.best.cost.min() == before.best.cost.min()
 
 
-def test_starts_are_distinct_the_best_first_and_agreed_upon_in_the_end():
-    found = list(starts(noisy(1, count=12), 0))
-    assert found[-1].agreed
-    first = [start for start in found if not start.agreed] or found
+def test_starts_are_distinct_and_the_best_of_the_first_step_comes_first():
+    task = noisy(1, count=12)
+    first, found = list(starts(task, 0, quick=True)), list(starts(task, 0))
     costs = [start.cost for start in first]
     assert costs == sorted(costs)
+    assert min(start.cost for start in found) <= costs[0]
     assert len({start.arm.shape.curvatures.tobytes() for start in found}) == len(found)
-    misses = [np.mean(start.arm.closest_joints(noisy(1, count=12).positions)[1] ** 2) for start in first]
-    assert np.all(np.array(costs) >= np.array(misses) * (1.0 - 1e-6))
+    misses = [np.mean(start.arm.closest_joints(task.positions)[1] ** 2) for start in found]
+    assert np.all(np.array([start.cost for start in found]) >= np.array(misses) * (1.0 - 1e-6))
 
 
 def test_starts_of_many_targets_state_their_cost_for_all_of_them():

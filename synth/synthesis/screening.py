@@ -45,8 +45,9 @@ _DISTINCT, _BETTER = 0.03, 0.01
 _ARM_LENGTH = 0.5
 # Starts whose mean squared misses differ by less than this part are of a kind: so many are enough.
 _ALIKE, _OF_A_KIND = 2e-3, {Objective.LEAST_SQUARES: 2, Objective.MINIMAX: 6}
-# Mean squared misses below this, m^2, are all as good: then the gentler bend goes first.
-_SETTLED = 1e-8
+# Misses below this, m, and below this part of the tightest tolerance are all as good: then the gentler bend
+# goes first.
+_SETTLED, _SETTLED_PART = 1e-5, 0.02
 # Of each step; where the worst miss counts, the mean squared one says less of a start.
 _MOST_STARTS = {Objective.LEAST_SQUARES: 12, Objective.MINIMAX: 24}
 
@@ -60,13 +61,11 @@ class Start:
         joints: The joint angles that come closest to the targets, shape (n, 2), rad.
         cost: Its mean squared miss, weighted with `relative_weights`, m^2: where it is settled, about the
             least in its valley, whatever else it has to keep clear of.
-        agreed: Whether the best valley so far is known so well that there hardly is a better one.
     """
 
     arm: Arm
     joints: FloatArray
     cost: float = 0.0
-    agreed: bool = False
 
 
 def starts(
@@ -128,10 +127,10 @@ def _starts(
     if designs := exact_designs(task):
         first = np.union1d(first, nearest_to_designs(shapes, designs, _PER_DESIGN))
     valleys, distinct = Valleys.of(task, shapes.take(first)), _Distinct(task)
-    yield from distinct.of(valleys.best, agreed=valleys.agreed)
+    yield from distinct.of(valleys.best)
     if not quick:
-        valleys = valleys.explored(task, lambda: shapes.take(drawn(_REFINED, _FRESH)), rng, stop)
-        yield from distinct.of(valleys.best, agreed=True)
+        valleys = valleys.explored(lambda: shapes.take(drawn(_REFINED, _FRESH)), rng, stop)
+        yield from distinct.of(valleys.best)
 
 
 class _Distinct:
@@ -146,16 +145,17 @@ class _Distinct:
         self._poses, self._costs = np.empty((0, 6)), np.empty(0)
         self._kinds = Counter[float]()
 
-    def of(self, refined: Refined, *, agreed: bool) -> Iterator[Start]:
+    def of(self, refined: Refined) -> Iterator[Start]:
         """Yield starts in the order of their costs, m^2, those aside that are nearly one yielded before."""
         population, base, yielded = refined.population, self._task.base, 0
         frame, position = population.end
         poses = np.hstack([position, _ARM_LENGTH * frame[:, :, 0]])
-        cost = np.maximum(refined.cost, _SETTLED)
+        as_good = min(_SETTLED, _SETTLED_PART * float(self._task.tolerances.min())) ** 2
+        cost = np.maximum(refined.cost, as_good)
         # Shapes that miss alike are mostly one surface, bent in several ways.
         kinds = np.round(np.log(cost) / _ALIKE)
         for index in np.lexsort([population.bending, cost]):
-            kind, settled = float(kinds[index]), cost[index] <= _SETTLED
+            kind, settled = float(kinds[index]), cost[index] <= as_good
             near = np.linalg.norm(self._poses - poses[index], axis=1) < _DISTINCT
             no_better = cost[index] >= (1.0 - _BETTER) * self._costs
             if np.any(near & no_better) or (
@@ -165,9 +165,7 @@ class _Distinct:
             self._kinds[kind] += 1
             self._poses = np.vstack([self._poses, poses[index]])
             self._costs = np.append(self._costs, cost[index])
-            yield Start(
-                population.arm(index, base), refined.joints[index], float(refined.cost[index]), agreed
-            )
+            yield Start(population.arm(index, base), refined.joints[index], float(refined.cost[index]))
             yielded += 1
             if yielded == _MOST_STARTS[self._task.objective]:
                 return

@@ -35,6 +35,7 @@ _STARTS_WHEN_IMPOSSIBLE = 12  # for a good best effort
 _FOLLOWED = 2  # shapes of a neighbour that are polished
 _STARTS_AFTER_FOUND = 4  # for distinct, gentler and nearer alternatives
 _STARTS_NO_BETTER = 2  # likewise, of shapes that miss a target
+_GAIN = 1e-3  # of the objective: the least that is worth another start
 _PROOF_TIME = 60.0  # s
 # Targets of all shapes together that are looked at where the search knew only a part of them.
 _VERIFIED_AT_MOST = 20_000
@@ -104,8 +105,6 @@ class Search:
             if not self._may_be_better(start):
                 no_better += 1
                 if no_better > _STARTS_NO_BETTER:
-                    if start.agreed:
-                        return
                     continue
             self.polishing.polish(start)
             if self._led_astray(start) and self.polishing.keep(start.arm, start.joints).verification.possible:
@@ -123,7 +122,8 @@ class Search:
         least = start.cost / float(self.part.tolerances.min()) ** 2  # in the mean, so also of the worst
         if self.part.objective is Objective.LEAST_SQUARES:
             least *= len(self.part.targets)
-        return least < min(rank(self.part, design)[1] for design in self.polishing.designs)
+        best = min(rank(self.part, design)[1] for design in self.polishing.designs)
+        return least < (1.0 - _GAIN) * best
 
     def _led_astray(self, start: Start) -> bool:
         """Whether polishing may have led away from a start that is nearly an answer, by long first steps."""

@@ -41,10 +41,14 @@ _MOST_SWAPPED = 2  # targets that get another angle of joint 2
 _BENT, _SWAPPED, _FRESH = 10, (4, 8), (5, 15)
 _GO_ON = 4
 _ALIKE = 0.01  # costs that differ by less than this part are those of one valley, bent in several ways
-# It is enough if so many shapes meet all targets, their costs below this, m^2; or if such a share of the
-# fresh shapes, and so many of them, ended within this part of the least cost.
-_ENOUGH, _EXACT = 5, 1e-10
+# It is enough if so many shapes meet all targets, to this part of the tightest tolerance; or if such a share
+# of the fresh shapes, and so many of them, ended within this part of the least cost.
+_ENOUGH, _EXACT = 5, 2e-3
 _AGREEING, _SAME = 0.05, 1e-3
+# But with a cost below this, m^2, the workspace may have two sheets so close together that most shapes end
+# with some targets on the wrong one.
+_SHEETS = 4e-6
+_TINY = 1e-14  # m^2
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,11 +56,13 @@ class Valleys:
     """What is known of the valleys of a task.
 
     Attributes:
+        task: The task.
         best: The best shapes.
         fresh: Where the best of the shapes ended that know nothing of each other: mean squared misses, m^2.
         drawn: How many of these there were.
     """
 
+    task: Task
     best: Refined
     fresh: FloatArray
     drawn: int
@@ -65,23 +71,24 @@ class Valleys:
     def of(cls, task: Task, fresh: Population) -> Valleys:
         """Return what fresh shapes tell."""
         best = _weighed(task, refine(task, fresh))
-        return cls(best, best.cost, len(best.cost))
+        return cls(task, best, best.cost, len(best.cost))
 
     @property
     def agreed(self) -> bool:
         """Whether enough shapes meet all targets, or enough fresh ones ended in the best valley."""
-        if np.count_nonzero(self.best.cost < _EXACT) >= _ENOUGH:
+        exact = (_EXACT * float(self.task.tolerances.min())) ** 2
+        if np.count_nonzero(self.best.cost < exact) >= _ENOUGH:
             return True
-        agreeing = np.count_nonzero(self.fresh <= (1.0 + _SAME) * self.best.cost.min())
-        return bool(agreeing >= max(_AGREEING * self.drawn, _ENOUGH))
+        least = self.best.cost.min()
+        agreeing = np.count_nonzero(self.fresh <= (1.0 + _SAME) * least)
+        return bool(least > _SHEETS and agreeing >= max(_AGREEING * self.drawn, _ENOUGH))
 
     def explored(
-        self, task: Task, draw: Callable[[], Population], rng: np.random.Generator, stop: Callable[[], bool]
+        self, draw: Callable[[], Population], rng: np.random.Generator, stop: Callable[[], bool]
     ) -> Valleys:
         """Return what is known after a search for better valleys.
 
         Args:
-            task: The task.
             draw: Draws fresh shapes.
             rng: Source of randomness.
             stop: Asked after each step; when it says yes, the search ends.
@@ -91,19 +98,23 @@ class Valleys:
             for step in (_bent, _swapped):
                 if now.agreed or stop():
                     return now
-                children = step(task, now.best.take(_parents(now.best)), rng)
+                children = step(self.task, now.best.take(_parents(now.best)), rng)
                 now = replace(now, best=now.best.improved_by(children))
-            now = now.with_fresh(task, draw())
+            now = now.with_fresh(draw())
         return now
 
-    def with_fresh(self, task: Task, drawn: Population) -> Valleys:
+    def with_fresh(self, shapes: Population) -> Valleys:
         """Return what is known with some more fresh shapes, the worst of which are given up half-way."""
         first, last = _FRESH
-        refined = refine(task, drawn, iterations=first).best(len(drawn.length) // _GO_ON)
-        refined = _weighed(task, refine(task, refined.population, iterations=last))
+        refined = refine(self.task, shapes, iterations=first).best(len(shapes.length) // _GO_ON)
+        refined = _weighed(self.task, refine(self.task, refined.population, iterations=last))
         fresh = np.concatenate([self.fresh, refined.cost])
-        drawn_now = self.drawn + len(drawn.length)
-        return Valleys(self.best.improved_by(refined), fresh, drawn_now)
+        return replace(
+            self,
+            best=self.best.improved_by(refined),
+            fresh=fresh,
+            drawn=self.drawn + len(shapes.length),
+        )
 
 
 def _bent(task: Task, parents: Refined, rng: np.random.Generator) -> Refined:
@@ -129,7 +140,7 @@ def _swapped(task: Task, parents: Refined, rng: np.random.Generator) -> Refined:
 def _parents(refined: Refined) -> NDArray[np.intp]:
     """Return the best shapes in order, many times over, those aside that miss like one before."""
     order = np.argsort(refined.cost, kind="stable")
-    kinds = np.round(np.log(refined.cost[order] + _EXACT) / _ALIKE)
+    kinds = np.round(np.log(refined.cost[order] + _TINY) / _ALIKE)
     different = order[np.flatnonzero(np.diff(kinds, prepend=-np.inf))]
     return np.resize(different[:_PARENTS], _PARENTS * _CHILDREN)
 
