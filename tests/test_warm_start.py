@@ -57,10 +57,10 @@ def test_targets_and_base_that_move_together_keep_the_shape(neighbour):
 
 
 def test_where_the_neighbour_leads_nowhere_the_whole_search_follows(neighbour):
-    task = planted_task(5, 16)[0]
+    task = planted_task(6, 16)[0]
     solution, whole = solve(task, warm_start=neighbour), solve(task)
     assert solution.found
-    assert solution.starts > 1
+    assert solution.starts > whole.starts
     assert len(solution.designs) >= len(whole.designs)
 
 
