@@ -72,6 +72,28 @@ def planted_task(seed: int, count: int | None = None, topology: Topology = Topol
     return Task(f"planted {seed}", ROBOT, targets), arm
 
 
+def nearly_special_task(seed: int, tolerance: float) -> Task:
+    """Return a task whose exact answer has axes that nearly meet, or are nearly parallel: two sheets."""
+    rng, limits = np.random.default_rng([seed, 99]), ROBOT.joint_limits
+    topology = (Topology.SPHERICAL, Topology.PUMA, Topology.SCARA)[seed % 3]
+    while True:
+        special = planted_arm(rng, topology).shape
+        bent = rng.normal(size=special.curvatures.shape) * rng.choice([0.005, 0.02, 0.05])
+        arm = arm_of(LinkShape(special.curvatures + bent, special.lengths))
+        if not feasible(arm):
+            continue
+        count = int(rng.integers(5, 16))
+        theta1 = rng.uniform(limits.base.lower, limits.base.upper, 50 * count)
+        theta2 = rng.uniform(limits.second.lower, limits.second.upper, 50 * count)
+        points = arm.forward_kinematics(theta1, theta2)
+        points = points[(points[:, 2] >= 0.0) & (ArmBody(arm).rod_from_tube(theta2) > 0.0)][:count]
+        if len(points) == count:
+            targets = tuple(
+                PointTarget(f"target {i + 1}", point, tolerance) for i, point in enumerate(points)
+            )
+            return Task(f"nearly special {seed}", ROBOT, targets)
+
+
 def out_of_reach(seed: int) -> Task:
     """Return a planted task with one target moved beyond what any shape can reach."""
     task, _ = planted_task(seed)

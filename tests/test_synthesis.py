@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from planted import ROBOT, feasible, out_of_reach, planted_task
+from planted import ROBOT, feasible, nearly_special_task, out_of_reach, planted_task
 
 from synth.robot import BasePose, Interval, MalleableLink, RigidLink
 from synth.synthesis import NotFoundError, Status, solve
@@ -284,6 +284,23 @@ def test_nearly_meeting_axes_have_two_sheets_and_the_right_one_is_chosen():
     reached = reached[reached[:, 2] > 0.0][:14]
     solution = solve(replace(task, targets=points(*reached, tolerance=2e-4)))
     assert solution.found
+
+
+@pytest.mark.parametrize("seed", [1, 9, 22, 26, 40])
+def test_the_exact_answer_is_found_though_most_starts_end_a_tenth_of_a_millimetre_beside_it(seed):
+    solution = solve(nearly_special_task(seed, tolerance=2e-5))
+    assert solution.found
+    assert independent_misses(solution).max() < 1e-6
+
+
+def test_without_alternatives_the_first_shape_is_the_answer():
+    task = planted_task(1, 4)[0]
+    first, whole = solve(task, alternatives=0), solve(task)
+    assert first.found
+    assert (first.starts, len(first.designs)) == (1, 1)
+    assert whole.starts > 1
+    assert whole.robot.shape.bending_energy <= first.robot.shape.bending_energy
+    assert solve(noisy(3, 8, 0.03), alternatives=0).starts < solve(noisy(3, 8, 0.03)).starts
 
 
 def test_the_solution_says_itself_in_json():

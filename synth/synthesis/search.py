@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 _STARTS_AT_MOST = 48
 _STARTS_WHEN_IMPOSSIBLE = 12  # for a good best effort
 _FOLLOWED = 2  # shapes of a neighbour that are polished
-_STARTS_AFTER_FOUND = 4  # for distinct, gentler and nearer alternatives
-_STARTS_NO_BETTER = 2  # likewise, of shapes that miss a target
+ALTERNATIVES = 4  # starts polished after a shape was found: for distinct, gentler and nearer ones
+_ALTERNATIVES_THAT_MISS = 2  # likewise, at most, where no shape meets all targets
 _GAIN = 1e-3  # of the objective: the least that is worth another start
 _PROOF_TIME = 60.0  # s
 # Targets of all shapes together that are looked at where the search knew only a part of them.
@@ -65,6 +65,7 @@ class Search:
     clock: Clock
     stop: Callable[[], bool]
     progress: Callable[[Progress], None]
+    alternatives: int = ALTERNATIVES
     starts: int = 0
     starts_at_most: int = 0
     starts_found: int = 0  # since a shape was found, that start included
@@ -104,7 +105,7 @@ class Search:
                 continue
             if not self._may_be_better(start):
                 no_better += 1
-                if no_better > _STARTS_NO_BETTER:
+                if no_better > min(_ALTERNATIVES_THAT_MISS, self.alternatives):
                     continue
             self.polishing.polish(start)
             if self._led_astray(start) and self.polishing.keep(start.arm, start.joints).verification.possible:
@@ -112,7 +113,7 @@ class Search:
             self.starts += 1
             self.starts_found += self.polishing.found
             self._report()
-            if self.starts >= self.starts_at_most or self.starts_found > _STARTS_AFTER_FOUND:
+            if self.starts >= self.starts_at_most or self.starts_found > self.alternatives:
                 return
 
     def _may_be_better(self, start: Start) -> bool:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from synth.synthesis.clock import Clock
 from synth.synthesis.many_targets import part_of
-from synth.synthesis.search import Progress, Search
+from synth.synthesis.search import ALTERNATIVES, Progress, Search
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -21,6 +21,7 @@ def solve(
     *,
     seed: int = 0,
     warm_start: Solution | None = None,
+    alternatives: int = ALTERNATIVES,
     prove: bool = False,
     time_limit: float = math.inf,
     stop: Callable[[], bool] | None = None,
@@ -34,6 +35,9 @@ def solve(
         warm_start: The solution of a task nearby, of the same robot: targets a few millimetres or
             centimetres away. If one of its two best shapes, polished for this task, reaches every target
             it is returned, with no other shapes beside it. If not, the whole search follows.
+        alternatives: How many start points are polished once a shape reaches every target, for gentler and
+            other ones; where none does, at most two that promise nothing better than the best. 0 gives the
+            first shape, in half the time.
         prove: Whether to bound how little any shape can miss; that takes seconds, a minute at most.
         time_limit: Time after which the best shape so far is returned, s.
         stop: Asked many times a second; when it says yes, the best shape so far is returned.
@@ -43,7 +47,7 @@ def solve(
         The solution, whatever was found; its status says what it is worth.
     """
     part = part_of(task, seed)
-    search = Search(task, part, seed, Clock(time_limit), stop or _never, progress or _silent)
+    search = Search(task, part, seed, Clock(time_limit), stop or _never, progress or _silent, alternatives)
     near = warm_start.designs if warm_start is not None and warm_start.task.robot == task.robot else ()
     if not search.follow(near):
         search.run()

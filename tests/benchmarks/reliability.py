@@ -17,7 +17,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from planted import out_of_reach, planted_task
+from planted import nearly_special_task, out_of_reach, planted_task
 
 from synth.synthesis import solve
 from synth.task import Task, Topology
@@ -28,6 +28,7 @@ FAMILIES = {
     "PUMA-like": Topology.PUMA,
     "SCARA": Topology.SCARA,
 }
+NEARLY = "nearly special"  # asked for to 0.02 mm: most starts end a tenth of a millimetre beside it
 GOAL = 0.5e-3  # m
 
 
@@ -35,6 +36,8 @@ def task_of(family: str, seed: int, count: int | None) -> Task:
     """Return the task of a family; targets of the special families are met with `topology: any`."""
     if family == "out of reach":
         return out_of_reach(seed)
+    if family == NEARLY:
+        return nearly_special_task(seed, tolerance=2e-5)
     return planted_task(seed, count, FAMILIES[family])[0]
 
 
@@ -64,7 +67,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--tasks", type=int, default=200)
     parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--families", nargs="*", default=[*FAMILIES, "out of reach"])
+    parser.add_argument("--families", nargs="*", default=[*FAMILIES, NEARLY, "out of reach"])
     arguments = parser.parse_args()
     with ProcessPoolExecutor(arguments.workers) as executor:
         for family in arguments.families:
