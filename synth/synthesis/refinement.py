@@ -31,7 +31,7 @@ _FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-3, 1e-9, 1e9
 _SQUARES, _NEARLY_WORST, _WORST_AFTER = 2.0, 12.0, 3
 _TOGETHER = 4000  # postures, so that the arrays stay in the cache
 # So many shapes with squared misses below this, m^2, are enough: the others need not arrive, too.
-_ENOUGH, _EXACT = 40, 1e-16
+_ENOUGH, _EXACT = 20, 1e-13
 _TINY = 1e-30  # m^2
 
 
