@@ -1,8 +1,8 @@
 """How near `solve` comes to the best that any method ever found, on 100 noisy tasks.
 
-    python tests/benchmarks/noisy.py [--tasks 100] [--deepen SECONDS]
+    python tests/benchmarks/noisy.py [--tasks 100] [--seed 0] [--deepen SECONDS]
 
-Each task is solved once, with the default seed. noisy_record.json keeps the least RMS miss of each task
+Each task is solved once. noisy_record.json keeps the least RMS miss of each task
 that anything ever found: this command, `peers.py --write`, or, with --deepen, so many seconds a task of
 compiled least squares from the best of many random shapes, from others at random, and from near the best.
 """
@@ -78,13 +78,14 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--tasks", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=0, help="seed of the search")
     parser.add_argument("--deepen", type=float, default=0.0, metavar="SECONDS")
     arguments = parser.parse_args()
     found, times = {}, []
     for seed in range(arguments.tasks):
         if arguments.deepen:
             remember({seed: deepened(seed, arguments.deepen)})
-        solution = solve(noisy_task(seed))
+        solution = solve(noisy_task(seed), seed=arguments.seed)
         found[seed] = rms_of(solution)
         times.append(solution.time.total)
     remember(found)
