@@ -55,11 +55,6 @@ class Kinematics:
         # An angle modulo a turn: into the turn around the interval's middle, then to its nearer end.
         return np.clip(into_turn(wanted, limits.middle), limits.lower, limits.upper)
 
-    def miss(self, theta2: FloatArray, point: FloatArray, limits: Interval) -> FloatArray:
-        """Return the distance of P5 from a point, theta2 given and joint 1 at its best."""
-        reached = self.forward(self.best_theta1(theta2, point, limits), theta2)
-        return np.asarray(np.linalg.norm(reached - point, axis=-1))
-
     def branches(self, point: FloatArray) -> FloatArray:
         """Return both branches of the inverse kinematics in closed form, joint limits aside.
 

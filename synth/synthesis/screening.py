@@ -48,7 +48,7 @@ _ALIKE, _OF_A_KIND = 2e-3, {Objective.LEAST_SQUARES: 2, Objective.MINIMAX: 6}
 # Misses below this, m, and below this part of the tightest tolerance are all as good: then the gentler bend
 # goes first.
 _SETTLED, _SETTLED_PART = 1e-5, 0.02
-# Of each step; where the worst miss counts, the mean squared one says less of a start.
+# Of each step; where the worst miss counts, the cost says less of what the nonlinear program will reach.
 _MOST_STARTS = {Objective.LEAST_SQUARES: 12, Objective.MINIMAX: 24}
 
 
@@ -59,8 +59,8 @@ class Start:
     Attributes:
         arm: The robot in it.
         joints: The joint angles that come closest to the targets, shape (n, 2), rad.
-        cost: Its mean squared miss, weighted with `relative_weights`, m^2: where it is settled, about the
-            least in its valley, whatever else it has to keep clear of.
+        cost: As of a `Refined` shape, with its depths in obstacles and in itself, m^2: about the least in its
+            valley, whatever the floor asks for.
     """
 
     arm: Arm
