@@ -55,17 +55,22 @@ def planted_arm(rng: np.random.Generator, topology: Topology = Topology.ANY) -> 
             return arm
 
 
+def reached_points(arm: Arm, count: int, rng: np.random.Generator) -> np.ndarray:
+    """Return points above the floor at random joint angles at which the arm is clear: `count` at most."""
+    limits = ROBOT.joint_limits
+    theta1 = rng.uniform(limits.base.lower, limits.base.upper, 50 * count)
+    theta2 = rng.uniform(limits.second.lower, limits.second.upper, 50 * count)
+    points = arm.forward_kinematics(theta1, theta2)
+    return points[(points[:, 2] >= 0.0) & (ArmBody(arm).rod_from_tube(theta2) > 0.0)][:count]
+
+
 def planted_task(seed: int, count: int | None = None, topology: Topology = Topology.ANY) -> tuple[Task, Arm]:
     """Return a task with 1 to 20 exact targets above the floor, and the arm that was planted."""
     rng = np.random.default_rng(seed)
     count = count or int(rng.integers(1, 21))
-    limits = ROBOT.joint_limits
     while True:
         arm = planted_arm(rng, topology)
-        theta1 = rng.uniform(limits.base.lower, limits.base.upper, 50 * count)
-        theta2 = rng.uniform(limits.second.lower, limits.second.upper, 50 * count)
-        points = arm.forward_kinematics(theta1, theta2)
-        points = points[(points[:, 2] >= 0.0) & (ArmBody(arm).rod_from_tube(theta2) > 0.0)][:count]
+        points = reached_points(arm, count, rng)
         if len(points) == count:
             break
     targets = tuple(PointTarget(f"target {i + 1}", point, 0.5e-3) for i, point in enumerate(points))
@@ -74,7 +79,7 @@ def planted_task(seed: int, count: int | None = None, topology: Topology = Topol
 
 def nearly_special_task(seed: int, tolerance: float) -> Task:
     """Return a task whose exact answer has axes that nearly meet, or are nearly parallel: two sheets."""
-    rng, limits = np.random.default_rng([seed, 99]), ROBOT.joint_limits
+    rng = np.random.default_rng([seed, 99])
     topology = (Topology.SPHERICAL, Topology.PUMA, Topology.SCARA)[seed % 3]
     while True:
         special = planted_arm(rng, topology).shape
@@ -83,10 +88,7 @@ def nearly_special_task(seed: int, tolerance: float) -> Task:
         if not feasible(arm):
             continue
         count = int(rng.integers(5, 16))
-        theta1 = rng.uniform(limits.base.lower, limits.base.upper, 50 * count)
-        theta2 = rng.uniform(limits.second.lower, limits.second.upper, 50 * count)
-        points = arm.forward_kinematics(theta1, theta2)
-        points = points[(points[:, 2] >= 0.0) & (ArmBody(arm).rod_from_tube(theta2) > 0.0)][:count]
+        points = reached_points(arm, count, rng)
         if len(points) == count:
             targets = tuple(
                 PointTarget(f"target {i + 1}", point, tolerance) for i, point in enumerate(points)

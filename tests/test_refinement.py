@@ -74,7 +74,7 @@ def test_the_slope_is_that_of_the_squared_misses_with_the_joints_at_their_best(r
         """Postures whose joint 2 is led on to its best, and which of them are there."""
         for _ in range(40):
             residuals = Residuals(shapes, Postures.at(aims, shapes.kinematics, theta2), limits.second)
-            step = residuals.following(np.zeros((len(theta2), residuals.width)))
+            step = residuals.following(np.zeros((len(theta2), shapes.motion.shape[1])))
             theta2 = np.clip(theta2 + step, limits.second.lower, limits.second.upper)
         return Postures.at(aims, shapes.kinematics, theta2), np.abs(step[:, 0]) < 1e-10
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.synthesis.population import ARM_LENGTH
 from synth.task import Topology
 
 if TYPE_CHECKING:
@@ -13,15 +14,13 @@ if TYPE_CHECKING:
     from synth.synthesis.population import Population
     from synth.task import Task
 
-_ARM_LENGTH = 0.5  # an axis 1 rad off its category puts P5 about this far off, m
-
 
 def category_offsets(task: Task, population: Population) -> FloatArray:
     """Return how far shapes are from the category asked for, shape (..., 2 or 0), m."""
     frame, position = population.end
     match task.topology:
         case Topology.SCARA:
-            return np.asarray(_ARM_LENGTH * frame[..., :2, 0])
+            return np.asarray(ARM_LENGTH * frame[..., :2, 0])
         case Topology.SPHERICAL | Topology.PUMA:
             from_point = position - _meeting_point(task)
             return np.asarray(np.einsum("...i,...ij->...j", from_point, frame[..., 1:]))
@@ -35,7 +34,7 @@ def category_slopes(task: Task, population: Population) -> FloatArray:
     match task.topology:
         case Topology.SCARA:
             # Where the end turns by w, u changes by w x u.
-            turned = _ARM_LENGTH * np.cross(frame[:, None, :, 0], np.eye(3)[:2])
+            turned = ARM_LENGTH * np.cross(frame[:, None, :, 0], np.eye(3)[:2])
             return np.concatenate([np.zeros_like(turned), turned], axis=-1)
         case Topology.SPHERICAL | Topology.PUMA:
             across = np.swapaxes(frame[..., 1:], -1, -2)

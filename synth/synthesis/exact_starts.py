@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.geometry import designs_through_five, designs_through_four, is_generic
+from synth.synthesis.population import ARM_LENGTH
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
     from synth.geometry import Invariants
     from synth.synthesis.population import Population
     from synth.task import Task
-
-_ARM_LENGTH = 0.5  # an axis 1 rad off puts P5 about this far off, m
 
 
 def exact_designs(task: Task) -> tuple[Invariants, ...] | None:
@@ -69,5 +68,5 @@ def _pose_about_axis_1(centre: FloatArray, axis: FloatArray) -> FloatArray:
     outward = centre[..., :2] / np.maximum(rho, 1e-12)[..., None]
     radial = np.einsum("...i,...i", axis[..., :2], outward)
     tangential = outward[..., 0] * axis[..., 1] - outward[..., 1] * axis[..., 0]
-    direction = _ARM_LENGTH * np.stack([radial, tangential, axis[..., 2]], axis=-1)
+    direction = ARM_LENGTH * np.stack([radial, tangential, axis[..., 2]], axis=-1)
     return np.concatenate([rho[..., None], centre[..., 2:], direction], axis=-1)

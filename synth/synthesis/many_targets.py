@@ -21,7 +21,7 @@ from synth.synthesis.refinement import refine
 from synth.task import Objective
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from synth.arrays import FloatArray
     from synth.robot import Arm
@@ -63,15 +63,12 @@ def ranked(task: Task, arms: Sequence[Arm], seed: int) -> list[Arm]:
     missing: list[tuple[float, Arm]] = []
     reaching = []
     for arm in arms:
-        for one in (arm, None):
-            turned = one or _with_joint_1_clear(some, arm)
-            if turned is None:
-                break
-            relative = _relative_misses(some, turned)
+        for candidate in _as_it_is_and_turned(some, arm):
+            relative = _relative_misses(some, candidate)
             if np.all(relative <= np.sqrt(some.weights)):
-                reaching.append(turned)
+                reaching.append(candidate)
                 break
-            missing.append((float(np.mean(relative**2)), turned))
+            missing.append((float(np.mean(relative**2)), candidate))
     return [*reaching, *(arm for _, arm in sorted(missing, key=lambda pair: pair[0]))]
 
 
@@ -97,6 +94,14 @@ def improved(task: Task, arm: Arm) -> Arm:
         refined = refine(some, Population.of(arm), iterations=steps)
         arm = refined.population.arm(0, task.base)
     return arm
+
+
+def _as_it_is_and_turned(task: Task, arm: Arm) -> Iterator[Arm]:
+    """Yield an arm and, if one is asked for, another that is turned about axis 1."""
+    yield arm
+    turned = _with_joint_1_clear(task, arm)
+    if turned is not None:
+        yield turned
 
 
 def _with_joint_1_clear(task: Task, arm: Arm) -> Arm | None:

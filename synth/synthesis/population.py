@@ -14,12 +14,14 @@ from synth.robot import ArcChains, Arm, BasePose, Kinematics, LinkShape, chain_e
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from synth.robot import Robot
+    from synth.robot import Interval, Robot
 
 _AT_LIMIT = 1e-9
 _EQUAL = 1e-12  # of the whole length
 _TINY = 1e-300
 _LEAST_RADIUS = 1e-3  # m; with P3, P4, P5 in line the radius has no derivative
+# An axis 1 rad off puts P5 about this far off, m.
+ARM_LENGTH = 0.5
 ARCS = 4  # equal arcs of a link: eight curvatures and a length for the five numbers of an end pose
 
 
@@ -52,9 +54,7 @@ class Population:
         bend = np.sqrt(rng.uniform(size=(size, ARCS)))
         direction = rng.uniform(0.0, 2.0 * np.pi, (size, ARCS))
         curvatures = np.stack([bend * np.cos(direction), bend * np.sin(direction)], axis=-1)
-        rigid = robot.rigid_link
-        intervals = [robot.link.length] if rigid.is_fixed else [robot.link.length, rigid.d35, rigid.d45]
-        lengths = [rng.uniform(interval.lower, interval.upper, size) for interval in intervals]
+        lengths = [rng.uniform(each.lower, each.upper, size) for each in _lengths(robot)]
         unknowns = np.column_stack([curvatures.reshape(size, -1), *lengths])
         return cls(robot, into_limits(robot, unknowns))
 
@@ -204,9 +204,7 @@ def free_directions(population: Population, slope: FloatArray) -> FloatArray:
         mine = slice(2 * arc, 2 * arc + 2)
         normal = bent[:, arc] * tightest[:, arc, None]
         free[:, mine, mine] -= normal[:, :, None] * normal[:, None, :]
-    rigid = robot.rigid_link
-    intervals = [robot.link.length] if rigid.is_fixed else [robot.link.length, rigid.d35, rigid.d45]
-    for unknown, interval in enumerate(intervals, start=2 * ARCS):
+    for unknown, interval in enumerate(_lengths(robot), start=2 * ARCS):
         shorter, longer = slope[:, unknown] > 0.0, slope[:, unknown] < 0.0
         shortest = x[:, unknown] <= interval.lower + _AT_LIMIT
         longest = x[:, unknown] >= interval.upper - _AT_LIMIT
@@ -222,3 +220,9 @@ def free_directions(population: Population, slope: FloatArray) -> FloatArray:
     held = more & (total * population.length >= most - _AT_LIMIT) & (squared > _AT_LIMIT)
     free -= (held / np.maximum(squared, _TINY))[:, None, None] * normal[:, :, None] * normal[:, None, :]
     return free
+
+
+def _lengths(robot: Robot) -> list[Interval]:
+    """Return the limits of the unknowns that are lengths, m."""
+    rigid = robot.rigid_link
+    return [robot.link.length] if rigid.is_fixed else [robot.link.length, rigid.d35, rigid.d45]

@@ -117,10 +117,10 @@ class _Descent:
         self._population, self._postures = population, postures
         self._damping = np.full(len(population.length), _FIRST_DAMPING)
         self._exponent = _SQUARES
+        self._cost = self._cost_of(population, postures)
 
     def after(self, iterations: int, *, keep_branches: bool) -> Refined:
         """Return the shapes after so many steps."""
-        self._cost = self._cost_of(self._population, self._postures)
         for iteration in range(iterations):
             if self._task.objective is Objective.MINIMAX and iteration == iterations // _WORST_AFTER:
                 self._exponent = _NEARLY_WORST

@@ -58,11 +58,6 @@ class Residuals:
             1.0,
         )
 
-    @property
-    def width(self) -> int:
-        """How many numbers move an end and its circle: 6, or 8 where the rigid link is free."""
-        return 6 if self._circle is None else 8
-
     def following(self, moved: FloatArray) -> FloatArray:
         """Return how far joint 2 follows the link's ends, to first order, shape (N, n), rad.
 
@@ -100,23 +95,17 @@ class Residuals:
         """Yield directions that held joints leave beside the normal, and for which shapes and targets."""
         turns, bends = self._postures.beyond == 0.0, self._free == 1.0
         outward, _, up = self._postures.tangent
-        curve = np.stack([outward / steep, np.zeros_like(up), up / steep])
-        for mask, direction in (
-            (turns & ~bends, curve),
-            (~turns & bends, None),
-            (~turns & ~bends, curve),
-            (~turns & ~bends, np.broadcast_to(np.array([0.0, 1.0, 0.0])[:, None, None], curve.shape)),
-        ):
-            owner, target = np.nonzero(mask)
-            if not len(owner):
-                continue
-            if direction is None:  # across the way on which joint 2 alone leads
-                yield (
-                    np.cross(normal[:, owner, target], self._along[:, owner, target], axis=0),
-                    (owner, target),
-                )
-            else:
-                yield direction[:, owner, target], (owner, target)
+        owner, target = np.nonzero(~bends)  # along the curve in the half-plane
+        if len(owner):
+            along = np.stack([outward, np.zeros_like(up), up]) / steep
+            yield along[:, owner, target], (owner, target)
+        owner, target = np.nonzero(~turns & bends)  # across the way on which joint 2 alone leads
+        if len(owner):
+            across = np.cross(normal[:, owner, target], self._along[:, owner, target], axis=0)
+            yield across, (owner, target)
+        owner, target = np.nonzero(~turns & ~bends)  # around axis 1
+        if len(owner):
+            yield np.tile([[0.0], [1.0], [0.0]], len(owner)), (owner, target)
 
     def _slopes(self, direction: FloatArray, some: _Pairs | None = None) -> FloatArray:
         """Return how P5 moves along directions, by the motions of ends and circles, shape (..., 6 or 8)."""

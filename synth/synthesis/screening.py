@@ -15,7 +15,7 @@ import numpy as np
 
 from synth.synthesis.category_offsets import category_offsets
 from synth.synthesis.exact_starts import exact_designs, nearest_to_designs
-from synth.synthesis.population import Population
+from synth.synthesis.population import ARM_LENGTH, Population
 from synth.synthesis.refinement import relative_weights
 from synth.synthesis.valleys import Valleys
 from synth.task import Objective
@@ -39,10 +39,9 @@ _PER_DESIGN = 6  # shapes looked at near each exact design, where there are any
 _FAR = 0.3
 # Misses below this, m, are as good as none for a start: the refinement sees to them.
 _NEAR = 3e-3
-# Starts whose link ends are nearer than this, m, count as one, an axis 1 rad apart for _ARM_LENGTH, unless
+# Starts whose link ends are nearer than this, m, count as one, an axis 1 rad apart for ARM_LENGTH, unless
 # the later one is better by more than this part.
 _DISTINCT, _BETTER = 0.03, 0.01
-_ARM_LENGTH = 0.5
 # Starts whose mean squared misses differ by less than this part are of a kind: so many are enough.
 _ALIKE, _OF_A_KIND = 2e-3, {Objective.LEAST_SQUARES: 2, Objective.MINIMAX: 6}
 # Misses below this, m, and below this part of the tightest tolerance are all as good: then the gentler bend
@@ -149,7 +148,7 @@ class _Distinct:
         """Yield starts in the order of their costs, m^2, those aside that are nearly one yielded before."""
         population, base, yielded = refined.population, self._task.base, 0
         frame, position = population.end
-        poses = np.hstack([position, _ARM_LENGTH * frame[:, :, 0]])
+        poses = np.hstack([position, ARM_LENGTH * frame[:, :, 0]])
         as_good = min(_SETTLED, _SETTLED_PART * float(self._task.tolerances.min())) ** 2
         cost = np.maximum(refined.cost, as_good)
         # Shapes that miss alike are mostly one surface, bent in several ways.

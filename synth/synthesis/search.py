@@ -160,9 +160,8 @@ class Search:
 
     def solution(self) -> Solution:
         """Rank what was found and say what it is worth."""
-        designs = self._for_all_targets(
-            best_of(self.part, [*self.polishing.designs, *self._changing_little()])
-        )
+        found = [*self.polishing.designs, *self._changing_little()]
+        designs = self._for_all_targets(best_of(self.part, found))
         status, reasons = self._verdict(designs)
         return Solution(
             self.task,
@@ -207,10 +206,8 @@ class Search:
 
         Joint 1 takes up by how much the link is turned about axis 1, if its limits allow.
         """
-        current, found = (
-            self.task.current,
-            [design for design in self.polishing.designs if design.verification.found],
-        )
+        current = self.task.current
+        found = [design for design in self.polishing.designs if design.verification.found]
         if current is None or not found:
             return []
         best = [design.arm for design in best_of(self.part, found)]

@@ -175,10 +175,7 @@ def lifted(race: Race) -> None:
 
 def first_shape(race: Race) -> None:
     """`synth.solve` itself, stopped when every target is within its tolerance."""
-    found: list[bool] = []
-    solution = solve(
-        race.task, progress=lambda progress: found.append(progress.found), stop=lambda: True in found
-    )
+    solution = solve(race.task, alternatives=0)
     race.offer_arm(solution.best.arm, solution.best.verification.joints)
 
 

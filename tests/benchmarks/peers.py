@@ -96,11 +96,11 @@ def outcome(job: tuple[int, int], budget: float, clock: str) -> Outcome:
     kind, seed = job
     task = task_of(kind, seed)
     warmed_up(task)
-    results = dict.fromkeys((SYNTH, FIRST, FLOOR), by_synth(task, kind, clock)[0])  # also warms up the floor
-    results[SYNTH], results[FLOOR] = by_synth(task, kind, clock)
-    goal = results[SYNTH].rms if kind == NOISY else None
+    by_synth(task, kind, clock)  # builds the programs, as what the others call is compiled before
+    whole, floor = by_synth(task, kind, clock)
     # A noisy task is never found, so `synth` does not stop there.
-    results[FIRST] = results[SYNTH]
+    results = {SYNTH: whole, FIRST: whole, FLOOR: floor}
+    goal = whole.rms if kind == NOISY else None
     if kind != NOISY:
         race = Race(task, None, budget, seed, clock)
         first_shape(race)

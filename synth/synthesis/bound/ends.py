@@ -7,10 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.robot.arc_chains import ArcChains
+from synth.robot import ANYWHERE, ArcChains, turned
 from synth.robot.chain_steps import improved
-from synth.robot.end_pose import ANYWHERE
-from synth.robot.turn import turned
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
