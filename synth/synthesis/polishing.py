@@ -14,6 +14,7 @@ from synth.synthesis.ranking import rank
 from synth.synthesis.separation import separations
 from synth.synthesis.solution import Design
 from synth.synthesis.verification import verify
+from synth.task import Objective
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -88,6 +89,8 @@ class Polishing:
 
     def _nlp(self, planes: Sequence[Separation], *, near: bool) -> SynthesisNlp:
         structure = Structure.of(self.task)
+        # Where the worst miss counts a start is the answer but for the gentlest bend: long steps lose it.
+        near = near or structure.objective is Objective.MINIMAX
         if planes:
             return SynthesisNlp(structure, ARCS, planes)
         return shared_nlp(structure, ARCS, near, threading.get_ident())

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 _NEWTON_STEPS = 2
 _FARTHEST_STEP = 0.3  # rad
 _TINY = 1e-12
+# Where a target is nearer to axis 1 than this, m, joint 1 counts as held in derivatives: turning helps
+# little there, and the distance from the axis has a kink on it.
+_NEAR_AXIS = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +65,8 @@ class Postures:
         point: P5 where joint 1 stands at zero, shape (3, N, n), m.
         miss: P5 - target, outward, around and up, shape (3, N, n), m.
         tangent: dP5/dtheta2, outward, around and up, shape (3, N, n), m.
+        turns: Whether joint 1 follows where P5 moves around axis 1, shape (N, n): not at its limits, and
+            not to speak of for a target on the axis.
     """
 
     theta2: FloatArray
@@ -71,6 +76,7 @@ class Postures:
     point: FloatArray
     miss: FloatArray
     tangent: FloatArray
+    turns: NDArray[np.bool_]
 
     @classmethod
     def at(cls, aims: Aims, kinematics: Kinematics, theta2: FloatArray) -> Postures:
@@ -100,7 +106,8 @@ class Postures:
             ]
         )
         tangent = np.stack([x * along[0] + y * along[1], x * along[1] - y * along[0], along[2]])
-        return cls(theta2, theta1, beyond, outward, point, miss, tangent)
+        turns = (beyond == 0.0) & (aims.radial > _NEAR_AXIS)
+        return cls(theta2, theta1, beyond, outward, point, miss, tangent, turns)
 
     @classmethod
     def nearest(cls, aims: Aims, kinematics: Kinematics) -> Postures:
@@ -138,7 +145,7 @@ class Postures:
     @cached_property
     def free_tangent(self) -> tuple[FloatArray, FloatArray]:
         """The direction in which joint 2 moves P5, joint 1 following if it may, and how fast, m / rad."""
-        around = np.where(self.beyond == 0.0, 0.0, self.tangent[1])
+        around = np.where(self.turns, 0.0, self.tangent[1])
         tangent = np.stack([self.tangent[0], around, self.tangent[2]])
         speed = np.sqrt(dot(tangent, tangent))
         return tangent / np.maximum(speed, _TINY), speed

@@ -18,6 +18,8 @@ from synth.synthesis.residuals import Residuals
 from synth.task import Objective
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
@@ -27,8 +29,16 @@ _ITERATIONS = 20
 # After so many steps each target may take the nearer branch of joint 2, wherever it is.
 _STEPS_ON_BRANCHES = 4
 _FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-3, 1e-9, 1e9
-# Exponents of the misses; where the worst one counts it is the large one after a third of the steps.
-_SQUARES, _NEARLY_WORST, _WORST_AFTER = 2.0, 12.0, 3
+# Exponents of the misses, and from which share of the steps on: where the worst miss counts, a norm that is
+# smooth comes first, because its valleys are wide, and then one that is nearly the worst.
+_SQUARES = 2.0
+_EXPONENTS = {
+    Objective.LEAST_SQUARES: ((0.0, _SQUARES),),
+    Objective.MINIMAX: ((0.0, _SQUARES), (0.25, 4.0), (0.4, 12.0)),
+}
+# Likewise, steps with each of ever larger exponents, until the norm is the worst miss to a millionth.
+_LEVELLING, _LEVELLING_STEPS = tuple(12.0 * 2.5**k for k in range(1, 13)), 6
+_LEVELLING_DAMPING = 1e-6
 _TOGETHER = 4000  # postures, so that the arrays stay in the cache
 # So many shapes with squared misses below this, m^2, are enough: the others need not arrive, too.
 _ENOUGH, _EXACT = 20, 1e-13
@@ -89,6 +99,15 @@ def refine(
     Returns:
         The improved shapes.
     """
+    return _descents(
+        task, population, theta2, lambda descent: descent.after(iterations, keep_branches=theta2 is not None)
+    )
+
+
+def _descents(
+    task: Task, population: Population, theta2: FloatArray | None, led: Callable[[_Descent], Refined]
+) -> Refined:
+    """Return shapes after their descents, led a part of them at a time."""
     aims = Aims(task.positions, task.robot.joint_limits)
     together = max(1, _TOGETHER // len(task.positions))
     parts = []
@@ -96,11 +115,32 @@ def refine(
         some = slice(first, first + together)
         part = population.take(some)
         if theta2 is None:
-            descent = _Descent(task, aims, part, Postures.nearest(aims, part.kinematics))
+            postures = Postures.nearest(aims, part.kinematics)
         else:
-            descent = _Descent(task, aims, part, Postures.at(aims, part.kinematics, theta2[some]))
-        parts.append(descent.after(iterations, keep_branches=theta2 is not None))
+            postures = Postures.at(aims, part.kinematics, theta2[some])
+        parts.append(led(_Descent(task, aims, part, postures)))
     return Refined.joined(parts)
+
+
+def level(task: Task, refined: Refined) -> Refined:
+    """Lower the worst miss of shapes for which it is nearly the least already.
+
+    The exponent of the norm is raised step by step: each norm's least is close to that of the one before, so
+    a few steps lead from one to the next, however sharp the norm has become.
+
+    Args:
+        task: The task, for the worst miss.
+        refined: Shapes, each with the branches of joint 2 on which it stays.
+
+    Returns:
+        The shapes, where these misses are less; their costs are the worst ones squared, m^2.
+    """
+    return _descents(
+        task,
+        refined.population,
+        refined.joints[..., 1],
+        lambda descent: descent.level(),
+    )
 
 
 def relative_weights(task: Task) -> FloatArray:
@@ -122,9 +162,7 @@ class _Descent:
     def after(self, iterations: int, *, keep_branches: bool) -> Refined:
         """Return the shapes after so many steps."""
         for iteration in range(iterations):
-            if self._task.objective is Objective.MINIMAX and iteration == iterations // _WORST_AFTER:
-                self._exponent = _NEARLY_WORST
-                self._cost = self._cost_of(self._population, self._postures)
+            self._measure_by(self._exponent_at(iteration / iterations))
             self._step()
             if np.count_nonzero(self._cost < _EXACT) >= _ENOUGH:
                 break
@@ -134,6 +172,25 @@ class _Descent:
                 self._postures = nearest.where(nearest.squared < self._postures.squared, self._postures)
                 self._cost = self._cost_of(self._population, self._postures)
         return Refined(self._population, self._postures.joints, self._cost)
+
+    def level(self) -> Refined:
+        """Return the shapes after steps in ever sharper norms."""
+        for exponent in _LEVELLING:
+            self._measure_by(exponent)
+            self._damping = np.full_like(self._damping, _LEVELLING_DAMPING)
+            for _ in range(_LEVELLING_STEPS):
+                self._step()
+        return Refined(self._population, self._postures.joints, self._cost)
+
+    def _exponent_at(self, share: float) -> float:
+        return next(
+            exponent for since, exponent in reversed(_EXPONENTS[self._task.objective]) if since <= share
+        )
+
+    def _measure_by(self, exponent: float) -> None:
+        if exponent != self._exponent:
+            self._exponent = exponent
+            self._cost = self._cost_of(self._population, self._postures)
 
     def _shares(self, postures: Postures) -> tuple[FloatArray, FloatArray]:
         """Return the squared p-norm of the misses, (N,), and its derivatives by the squared misses, (N, n).
@@ -159,9 +216,10 @@ class _Descent:
     def _step(self) -> None:
         """Move each shape by a damped step if that makes it better."""
         residuals = Residuals(self._population, self._postures, self._aims.limits.second)
-        curvature, slope = residuals.normal_equations(self._shares(self._postures)[1])
-        # A miss to a power of p is p - 1 times as curved as the square with the same slope.
-        curvature *= self._exponent - 1.0
+        cost, shares = self._shares(self._postures)
+        curvature, slope = residuals.normal_equations(shares)
+        if self._exponent != _SQUARES:
+            curvature = _curvature_of_norm(self._exponent, cost, curvature, slope)
         by_end = category_slopes(self._task, self._population)
         curvature[:, :6, :6] += by_end.transpose(0, 2, 1) @ by_end
         off = category_offsets(self._task, self._population)
@@ -186,6 +244,19 @@ class _Descent:
         )
 
 
+def _curvature_of_norm(
+    exponent: float, cost: FloatArray, curvature: FloatArray, slope: FloatArray
+) -> FloatArray:
+    """Return half the second derivative of the squared p-norm C of the misses, as Gauss and Newton take it.
+
+    With J^T W J and g = J^T W r of the weights W that `_shares` gives it is
+    (p - 1) J^T W J - (p - 2) g g^T / C. The second term is what makes the steps long where all misses shrink
+    together; by Cauchy and Schwarz the difference is never less than J^T W J.
+    """
+    along = slope / np.sqrt(np.maximum(cost, _TINY))[:, None]
+    return (exponent - 1.0) * curvature - (exponent - 2.0) * along[:, :, None] * along[:, None, :]
+
+
 def _damped_step(
     population: Population, curvature: FloatArray, slope: FloatArray, damping: FloatArray
 ) -> FloatArray:
@@ -194,5 +265,6 @@ def _damped_step(
     diagonal = np.einsum("npp->np", curvature)
     # The floor of the scale keeps unknowns that nothing depends on from running away.
     scale = diagonal + 1e-3 * diagonal.max(axis=1, keepdims=True) + 1e-12
-    damped = free @ (curvature + (damping[:, None] * scale)[:, :, None] * unit) @ free + unit - free
+    # The brackets matter: to add the unit and take it away again would round a small curvature to nothing.
+    damped = free @ (curvature + (damping[:, None] * scale)[:, :, None] * unit) @ free + (unit - free)
     return np.asarray(-np.linalg.solve(damped, free @ slope[..., None])[..., 0])

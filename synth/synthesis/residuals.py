@@ -93,7 +93,7 @@ class Residuals:
 
     def _held_directions(self, normal: FloatArray, steep: FloatArray) -> Iterator[tuple[FloatArray, _Pairs]]:
         """Yield directions that held joints leave beside the normal, and for which shapes and targets."""
-        turns, bends = self._postures.beyond == 0.0, self._free == 1.0
+        turns, bends = self._postures.turns, self._free == 1.0
         outward, _, up = self._postures.tangent
         owner, target = np.nonzero(~bends)  # along the curve in the half-plane
         if len(owner):

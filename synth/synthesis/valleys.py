@@ -20,8 +20,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.synthesis.population import ARCS, Population, into_limits
-from synth.synthesis.refinement import Refined, refine
+from synth.synthesis.refinement import Refined, level, refine
 from synth.synthesis.separation import overlaps
+from synth.task import Objective
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -49,6 +50,7 @@ _AGREEING, _SAME = 0.05, 1e-3
 # with some targets on the wrong one.
 _SHEETS = 4e-6
 _TINY = 1e-14  # m^2
+_LEVELLED = 48  # valleys whose least worst miss is looked for
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +74,14 @@ class Valleys:
         """Return what fresh shapes tell."""
         best = _weighed(task, refine(task, fresh))
         return cls(task, best, best.cost, len(best.cost))
+
+    @property
+    def promising(self) -> Refined:
+        """The best shapes, of each valley some; where the worst miss counts, with the least they can have."""
+        if self.task.objective is Objective.LEAST_SQUARES:
+            return self.best
+        some = self.best.take(_different(self.best)[:_LEVELLED])
+        return _weighed(self.task, level(self.task, some))
 
     @property
     def agreed(self) -> bool:
@@ -138,11 +148,15 @@ def _swapped(task: Task, parents: Refined, rng: np.random.Generator) -> Refined:
 
 
 def _parents(refined: Refined) -> NDArray[np.intp]:
-    """Return the best shapes in order, many times over, those aside that miss like one before."""
+    """Return the best shapes in order, many times over, except those that miss like an earlier one."""
+    return np.resize(_different(refined)[:_PARENTS], _PARENTS * _CHILDREN)
+
+
+def _different(refined: Refined) -> NDArray[np.intp]:
+    """Return the best shapes in order, except those that miss like an earlier one."""
     order = np.argsort(refined.cost, kind="stable")
     kinds = np.round(np.log(refined.cost[order] + _TINY) / _ALIKE)
-    different = order[np.flatnonzero(np.diff(kinds, prepend=-np.inf))]
-    return np.resize(different[:_PARENTS], _PARENTS * _CHILDREN)
+    return np.asarray(order[np.flatnonzero(np.diff(kinds, prepend=-np.inf))])
 
 
 def _weighed(task: Task, refined: Refined) -> Refined:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 
-def pack(task: Task, arm: Arm, joints: FloatArray, overlaps: int) -> FloatArray:
+def pack(task: Task, arm: Arm, joints: FloatArray, overlaps: int, weights: FloatArray) -> FloatArray:
     """Return the values of the unknowns for a shape.
 
     Args:
@@ -25,6 +25,7 @@ def pack(task: Task, arm: Arm, joints: FloatArray, overlaps: int) -> FloatArray:
         arm: The robot in that shape, of equal arcs.
         joints: Its joint angles for each target, shape (n, 2), rad.
         overlaps: How many overlaps are among the unknowns; they start from zero.
+        weights: Of the squared misses in the objective, shape (n,), 1/m^2.
     """
     radius = task.robot.link.min_bend_radius
     misses = arm.base.to_base(arm.forward_kinematics(joints[:, 0], joints[:, 1])) - task.positions
@@ -39,8 +40,7 @@ def pack(task: Task, arm: Arm, joints: FloatArray, overlaps: int) -> FloatArray:
         np.zeros(overlaps),
     ]
     if task.objective is Objective.MINIMAX:
-        worst = np.max(task.weights * (np.linalg.norm(misses, axis=1) / task.tolerances) ** 2)
-        parts.append([worst])
+        parts.append([np.max(weights * np.sum(misses**2, axis=1))])
     return np.concatenate([np.asarray(part, dtype=np.float64) for part in parts])
 
 

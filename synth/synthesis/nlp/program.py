@@ -55,6 +55,9 @@ _GENTLENESS = 1e-4
 # length, m, because the solver scales the objective down by its steepest slope.
 _LARGE_MISS = 0.01
 _OVERLAP_UNIT = 1e-3
+# The objective is counted in that of the start, so that the solver meets numbers of about one, but no finer
+# than this: a start may be the answer, and its miss then is only rounding.
+_FINEST_UNIT = 1.0
 
 
 @dataclass(frozen=True)
@@ -144,11 +147,17 @@ class SynthesisNlp:
             SolverError: The solver broke down without an answer.
             KeyboardInterrupt: The user interrupted the solver (which swallows the exception).
         """
-        weights = task.weights / task.tolerances**2
+        weights = task.weights / task.tolerances**2 / _unit(task, start, joints)
         floor, steepest = task.floor or 0.0, 2.0 * _LARGE_MISS * _OVERLAP_UNIT * float(weights.max())
         parameters = np.concatenate([task.positions.T.ravel(), weights, [floor, steepest]])
         values, status, iterations = self._ipopt.solve(
-            pack(task, start, joints, self._overlaps), parameters, stop
+            pack(task, start, joints, self._overlaps, weights), parameters, stop
         )
         arm, found_joints = unpack(task, values, self._arcs)
         return NlpAnswer(arm, found_joints, status, iterations)
+
+
+def _unit(task: Task, arm: Arm, joints: FloatArray) -> float:
+    """Return the worst weighted (miss / tolerance)^2 of a start, the unit of the objective."""
+    misses = np.linalg.norm(arm.forward_kinematics(*joints.T) - task.table.positions, axis=1)
+    return max(_FINEST_UNIT, float(np.max(task.weights * (misses / task.tolerances) ** 2)))
