@@ -18,14 +18,14 @@ from synth.synthesis.residuals import Residuals
 from synth.task import Objective
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
     from synth.task import Task
 
-_ITERATIONS = 20
+_ITERATIONS = {Objective.LEAST_SQUARES: 20, Objective.MINIMAX: 24}
 # After so many steps each target may take the nearer branch of joint 2, wherever it is.
 _STEPS_ON_BRANCHES = 4
 _FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-3, 1e-9, 1e9
@@ -36,9 +36,11 @@ _EXPONENTS = {
     Objective.LEAST_SQUARES: ((0.0, _SQUARES),),
     Objective.MINIMAX: ((0.0, _SQUARES), (0.25, 4.0), (0.4, 12.0)),
 }
-# Likewise, steps with each of ever larger exponents, until the norm is the worst miss to a millionth.
-_LEVELLING, _LEVELLING_STEPS = tuple(12.0 * 2.5**k for k in range(1, 13)), 6
-_LEVELLING_DAMPING = 1e-6
+# Steps with each of ever larger exponents, until the norm is the worst miss to a few parts in 10,000; half-way
+# the shapes that are no longer promising are given up.
+_LEVELLING = tuple(12.0 * 1.5**k for k in range(1, 8)), tuple(12.0 * 1.5**k for k in range(8, 17))
+_LEVELLING_STEPS, _LEVELLED = 6, 10
+_LEVELLING_DAMPING = 1e-4
 _TOGETHER = 4000  # postures, so that the arrays stay in the cache
 # So many shapes with squared misses below this, m^2, are enough: the others need not arrive, too.
 _ENOUGH, _EXACT = 20, 1e-13
@@ -76,13 +78,14 @@ class Refined:
         """Return the best shapes in order, `count` at most."""
         return self.take(np.argsort(self.cost, kind="stable")[:count])
 
-    def improved_by(self, other: Refined) -> Refined:
-        """Return as many of the best of these and others as there are of these."""
-        return Refined.joined([self, other]).best(len(self.cost))
-
 
 def refine(
-    task: Task, population: Population, theta2: FloatArray | None = None, iterations: int = _ITERATIONS
+    task: Task,
+    population: Population,
+    theta2: FloatArray | None = None,
+    iterations: int | None = None,
+    *,
+    near: bool = False,
 ) -> Refined:
     """Improve shapes by damped Gauss-Newton steps, their limits and those of the joints observed.
 
@@ -94,13 +97,18 @@ def refine(
         population: The starts, of shape (N,).
         theta2: Angle of joint 2 at which each start shall meet each target, shape (N, n), rad, and stay on
             that branch; by default the nearest one, which is looked for again from time to time.
-        iterations: Number of steps.
+        iterations: Number of steps; by default enough to arrive, mostly.
+        near: Whether the starts were refined before: the norm whose valleys are the widest is left out.
 
     Returns:
         The improved shapes.
     """
+    iterations = iterations or _ITERATIONS[task.objective]
     return _descents(
-        task, population, theta2, lambda descent: descent.after(iterations, keep_branches=theta2 is not None)
+        task,
+        population,
+        theta2,
+        lambda descent: descent.after(iterations, keep_branches=theta2 is not None, near=near),
     )
 
 
@@ -133,14 +141,16 @@ def level(task: Task, refined: Refined) -> Refined:
         refined: Shapes, each with the branches of joint 2 on which it stays.
 
     Returns:
-        The shapes, where these misses are less; their costs are the worst ones squared, m^2.
+        The best of the shapes, where these misses are less; their costs are nearly the worst ones squared, m^2.
     """
-    return _descents(
-        task,
-        refined.population,
-        refined.joints[..., 1],
-        lambda descent: descent.level(),
-    )
+    for exponents in _LEVELLING:
+        refined = _descents(
+            task,
+            refined.population,
+            refined.joints[..., 1],
+            lambda descent, exponents=exponents: descent.level(exponents),
+        ).best(_LEVELLED)
+    return refined
 
 
 def relative_weights(task: Task) -> FloatArray:
@@ -159,10 +169,10 @@ class _Descent:
         self._exponent = _SQUARES
         self._cost = self._cost_of(population, postures)
 
-    def after(self, iterations: int, *, keep_branches: bool) -> Refined:
+    def after(self, iterations: int, *, keep_branches: bool, near: bool) -> Refined:
         """Return the shapes after so many steps."""
         for iteration in range(iterations):
-            self._measure_by(self._exponent_at(iteration / iterations))
+            self._measure_by(self._exponent_at(iteration / iterations, near=near))
             self._step()
             if np.count_nonzero(self._cost < _EXACT) >= _ENOUGH:
                 break
@@ -173,19 +183,19 @@ class _Descent:
                 self._cost = self._cost_of(self._population, self._postures)
         return Refined(self._population, self._postures.joints, self._cost)
 
-    def level(self) -> Refined:
+    def level(self, exponents: Sequence[float]) -> Refined:
         """Return the shapes after steps in ever sharper norms."""
-        for exponent in _LEVELLING:
+        for exponent in exponents:
             self._measure_by(exponent)
             self._damping = np.full_like(self._damping, _LEVELLING_DAMPING)
             for _ in range(_LEVELLING_STEPS):
                 self._step()
         return Refined(self._population, self._postures.joints, self._cost)
 
-    def _exponent_at(self, share: float) -> float:
-        return next(
-            exponent for since, exponent in reversed(_EXPONENTS[self._task.objective]) if since <= share
-        )
+    def _exponent_at(self, share: float, *, near: bool) -> float:
+        exponents = _EXPONENTS[self._task.objective]
+        share = max(share, exponents[1][0]) if near and len(exponents) > 1 else share
+        return next(exponent for since, exponent in reversed(exponents) if since <= share)
 
     def _measure_by(self, exponent: float) -> None:
         if exponent != self._exponent:

@@ -127,7 +127,7 @@ def _starts(
         first = np.union1d(first, nearest_to_designs(shapes, designs, _PER_DESIGN))
     valleys, distinct = Valleys.of(task, shapes.take(first)), _Distinct(task)
     yield from distinct.of(valleys.promising)
-    if not quick:
+    if not (quick or valleys.agreed):
         valleys = valleys.explored(lambda: shapes.take(drawn(_REFINED, _FRESH)), rng, stop)
         yield from distinct.of(valleys.promising)
 

@@ -32,8 +32,9 @@ if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.task import Task
 
-# Rounds of the three steps; shapes kept; of these the parents, which miss differently, and children of each.
-_ROUNDS, _KEPT, _PARENTS, _CHILDREN = 10, 400, 20, 10
+# Rounds of the three steps; shapes kept; of these the parents, which miss differently; those of half of the
+# children; and children of each.
+_ROUNDS, _KEPT, _PARENTS, _BEST_PARENTS, _CHILDREN = 10, 400, 20, 2, 10
 # Sizes of the bends, in units of the largest curvature; lengths change by a twentieth of that, m.
 _SIZES, _LENGTHS = (0.03, 0.1, 0.3), 0.05
 _MOST_SWAPPED = 2  # targets that get another angle of joint 2
@@ -50,6 +51,7 @@ _AGREEING, _SAME = 0.05, 1e-3
 # with some targets on the wrong one.
 _SHEETS = 4e-6
 _TINY = 1e-14  # m^2
+_OF_A_KIND = 4
 _LEVELLED = 48  # valleys whose least worst miss is looked for
 
 
@@ -80,7 +82,7 @@ class Valleys:
         """The best shapes, of each valley some; where the worst miss counts, with the least they can have."""
         if self.task.objective is Objective.LEAST_SQUARES:
             return self.best
-        some = self.best.take(_different(self.best)[:_LEVELLED])
+        some = self.best.take(_some_of_each_kind(self.best, 1)[:_LEVELLED])
         return _weighed(self.task, level(self.task, some))
 
     @property
@@ -109,7 +111,7 @@ class Valleys:
                 if now.agreed or stop():
                     return now
                 children = step(self.task, now.best.take(_parents(now.best)), rng)
-                now = replace(now, best=now.best.improved_by(children))
+                now = now.with_better(children)
             now = now.with_fresh(draw())
         return now
 
@@ -117,14 +119,25 @@ class Valleys:
         """Return what is known with some more fresh shapes, the worst of which are given up half-way."""
         first, last = _FRESH
         refined = refine(self.task, shapes, iterations=first).best(len(shapes.length) // _GO_ON)
-        refined = _weighed(self.task, refine(self.task, refined.population, iterations=last))
+        refined = _weighed(self.task, refine(self.task, refined.population, iterations=last, near=True))
         fresh = np.concatenate([self.fresh, refined.cost])
         return replace(
             self,
-            best=self.best.improved_by(refined),
+            best=self.with_better(refined).best,
             fresh=fresh,
             drawn=self.drawn + len(shapes.length),
         )
+
+    def with_better(self, refined: Refined) -> Valleys:
+        """Return what is known with more shapes, of which the best are kept.
+
+        Where the worst miss counts only a few of each valley are: the one that is lowest in the smooth norm
+        need not be so in the end.
+        """
+        both = Refined.joined([self.best, refined])
+        if self.task.objective is Objective.MINIMAX:
+            both = both.take(_some_of_each_kind(both, _OF_A_KIND))
+        return replace(self, best=both.best(_KEPT))
 
 
 def _bent(task: Task, parents: Refined, rng: np.random.Generator) -> Refined:
@@ -133,7 +146,7 @@ def _bent(task: Task, parents: Refined, rng: np.random.Generator) -> Refined:
     size = rng.choice(_SIZES, (len(unknowns), 1)) * np.ones(unknowns.shape)
     size[:, 2 * ARCS :] *= _LENGTHS
     changed = into_limits(task.robot, unknowns + size * rng.normal(size=unknowns.shape))
-    return _weighed(task, refine(task, Population(task.robot, changed), iterations=_BENT))
+    return _weighed(task, refine(task, Population(task.robot, changed), iterations=_BENT, near=True))
 
 
 def _swapped(task: Task, parents: Refined, rng: np.random.Generator) -> Refined:
@@ -144,19 +157,24 @@ def _swapped(task: Task, parents: Refined, rng: np.random.Generator) -> Refined:
     angles = np.where(chosen, rng.uniform(limits.lower, limits.upper, theta2.shape), theta2)
     first, last = _SWAPPED
     led = refine(task, parents.population, angles, iterations=first)
-    return _weighed(task, refine(task, led.population, iterations=last))
+    return _weighed(task, refine(task, led.population, iterations=last, near=True))
 
 
 def _parents(refined: Refined) -> NDArray[np.intp]:
     """Return the best shapes in order, many times over, except those that miss like an earlier one."""
-    return np.resize(_different(refined)[:_PARENTS], _PARENTS * _CHILDREN)
+    different = _some_of_each_kind(refined, 1)
+    children = _PARENTS * _CHILDREN
+    return np.concatenate(
+        [np.resize(different[:_PARENTS], children // 2), np.resize(different[:_BEST_PARENTS], children // 2)]
+    )
 
 
-def _different(refined: Refined) -> NDArray[np.intp]:
-    """Return the best shapes in order, except those that miss like an earlier one."""
+def _some_of_each_kind(refined: Refined, count: int) -> NDArray[np.intp]:
+    """Return the best shapes in order, of those that miss alike at most `count`."""
     order = np.argsort(refined.cost, kind="stable")
     kinds = np.round(np.log(refined.cost[order] + _TINY) / _ALIKE)
-    return np.asarray(order[np.flatnonzero(np.diff(kinds, prepend=-np.inf))])
+    _, first, kind = np.unique(kinds, return_index=True, return_inverse=True)
+    return np.asarray(order[np.arange(len(order)) - first[kind] < count])
 
 
 def _weighed(task: Task, refined: Refined) -> Refined:
