@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from synth.synthesis.separation import Separation
     from synth.task import Task
 
-# How often planes between the arm and obstacles are taken anew where the solver ended.
+# How often planes between the arm and obstacles are taken anew where the solver ended, until a shape is found.
 _PLANES_ANEW = 5
 _GAINED = 0.9  # of the objective before: the least gain for which to go on
 _CLASHES = ("obstacle", "itself")
@@ -66,7 +66,7 @@ class Polishing:
         """
         arm, joints, itself = start.arm, start.joints, False
         best = math.inf
-        for _ in range(_PLANES_ANEW):
+        for _ in range(1 if self.found else _PLANES_ANEW):
             with self.clock.on("solving"):
                 planes = separations(self.task, arm, joints, itself=itself)
                 try:

@@ -7,6 +7,7 @@ anywhere, so that the nonlinear program need not try them all.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +16,7 @@ from synth.synthesis.category_offsets import category_offsets, category_slopes
 from synth.synthesis.population import Population, free_directions, into_limits
 from synth.synthesis.postures import Aims, Postures
 from synth.synthesis.residuals import Residuals
+from synth.synthesis.separation import overlaps
 from synth.task import Objective
 
 if TYPE_CHECKING:
@@ -36,11 +38,13 @@ _EXPONENTS = {
     Objective.LEAST_SQUARES: ((0.0, _SQUARES),),
     Objective.MINIMAX: ((0.0, _SQUARES), (0.25, 4.0), (0.4, 12.0)),
 }
-# Steps with each of ever larger exponents, until the norm is the worst miss to a few parts in 10,000; half-way
-# the shapes that are no longer promising are given up.
+# Steps with each of ever larger exponents, until the norm is the worst miss to a few parts in 10,000; half
+# the way on, the shapes that are no longer promising are given up.
 _LEVELLING = tuple(12.0 * 1.5**k for k in range(1, 8)), tuple(12.0 * 1.5**k for k in range(8, 17))
 _LEVELLING_STEPS, _LEVELLED = 6, 10
 _LEVELLING_DAMPING = 1e-4
+# Steps out of obstacles, what is to be kept from them, m, and the differences of unknowns that tell which way.
+_CLEARING, _MARGIN, _DIFFERENCE = 10, 4e-3, 1e-5
 _TOGETHER = 4000  # postures, so that the arrays stay in the cache
 # So many shapes with squared misses below this, m^2, are enough: the others need not arrive, too.
 _ENOUGH, _EXACT = 20, 1e-13
@@ -113,7 +117,12 @@ def refine(
 
 
 def _descents(
-    task: Task, population: Population, theta2: FloatArray | None, led: Callable[[_Descent], Refined]
+    task: Task,
+    population: Population,
+    theta2: FloatArray | None,
+    led: Callable[[_Descent], Refined],
+    *,
+    clear: bool = False,
 ) -> Refined:
     """Return shapes after their descents, led a part of them at a time."""
     aims = Aims(task.positions, task.robot.joint_limits)
@@ -126,7 +135,7 @@ def _descents(
             postures = Postures.nearest(aims, part.kinematics)
         else:
             postures = Postures.at(aims, part.kinematics, theta2[some])
-        parts.append(led(_Descent(task, aims, part, postures)))
+        parts.append(led(_Descent(task, aims, part, postures, clear=clear)))
     return Refined.joined(parts)
 
 
@@ -141,16 +150,25 @@ def level(task: Task, refined: Refined) -> Refined:
         refined: Shapes, each with the branches of joint 2 on which it stays.
 
     Returns:
-        The best of the shapes, where these misses are less; their costs are nearly the worst ones squared, m^2.
+        The best of the shapes, with lower ones; their costs are nearly the worst misses squared, m^2.
     """
     for exponents in _LEVELLING:
-        refined = _descents(
-            task,
-            refined.population,
-            refined.joints[..., 1],
-            lambda descent, exponents=exponents: descent.level(exponents),
-        ).best(_LEVELLED)
+        led = partial(_Descent.level, exponents=exponents)
+        refined = _descents(task, refined.population, refined.joints[..., 1], led).best(_LEVELLED)
     return refined
+
+
+def cleared(task: Task, refined: Refined) -> Refined:
+    """Move shapes out of obstacles and out of themselves, as their targets allow.
+
+    Args:
+        task: The task.
+        refined: Shapes, each with the branches of joint 2 on which it stays.
+
+    Returns:
+        The shapes; their costs count the misses alone.
+    """
+    return _descents(task, refined.population, refined.joints[..., 1], _Descent.cleared, clear=True)
 
 
 def relative_weights(task: Task) -> FloatArray:
@@ -162,8 +180,10 @@ def relative_weights(task: Task) -> FloatArray:
 class _Descent:
     """Shapes on their way down, each with its postures."""
 
-    def __init__(self, task: Task, aims: Aims, population: Population, postures: Postures) -> None:
-        self._task, self._aims, self._weights = task, aims, relative_weights(task)
+    def __init__(
+        self, task: Task, aims: Aims, population: Population, postures: Postures, *, clear: bool
+    ) -> None:
+        self._task, self._aims, self._weights, self._clear = task, aims, relative_weights(task), clear
         self._population, self._postures = population, postures
         self._damping = np.full(len(population.length), _FIRST_DAMPING)
         self._exponent = _SQUARES
@@ -182,6 +202,14 @@ class _Descent:
                 self._postures = nearest.where(nearest.squared < self._postures.squared, self._postures)
                 self._cost = self._cost_of(self._population, self._postures)
         return Refined(self._population, self._postures.joints, self._cost)
+
+    def cleared(self) -> Refined:
+        """Return the shapes after steps out of obstacles, with the costs of their misses."""
+        self.after(_CLEARING, keep_branches=True, near=True)
+        self._clear = False
+        return Refined(
+            self._population, self._postures.joints, self._cost_of(self._population, self._postures)
+        )
 
     def level(self, exponents: Sequence[float]) -> Refined:
         """Return the shapes after steps in ever sharper norms."""
@@ -221,7 +249,10 @@ class _Descent:
 
     def _cost_of(self, population: Population, postures: Postures) -> FloatArray:
         off = category_offsets(self._task, population)
-        return np.asarray(self._shares(postures)[0] + np.einsum("ni,ni->n", off, off))
+        cost = self._shares(postures)[0] + np.einsum("ni,ni->n", off, off)
+        if self._clear:
+            cost += np.mean(overlaps(self._task, population, postures.joints, margin=_MARGIN) ** 2, axis=-1)
+        return np.asarray(cost)
 
     def _step(self) -> None:
         """Move each shape by a damped step if that makes it better."""
@@ -237,8 +268,12 @@ class _Descent:
 
         robot, motion = self._population.robot, self._population.motion
         by_unknowns = motion.transpose(0, 2, 1)
-        by_unknown = (by_unknowns @ slope[..., None])[..., 0]
-        step = _damped_step(self._population, by_unknowns @ curvature @ motion, by_unknown, self._damping)
+        by_unknown, curvature = (by_unknowns @ slope[..., None])[..., 0], by_unknowns @ curvature @ motion
+        if self._clear:
+            depth, deeper = self._depths(residuals)
+            by_unknown += np.einsum("ntk,nt->nk", deeper, depth) / depth.shape[1]
+            curvature += deeper.transpose(0, 2, 1) @ deeper / depth.shape[1]
+        step = _damped_step(self._population, curvature, by_unknown, self._damping)
         moved = Population(robot, into_limits(robot, self._population.unknowns + step))
         second = self._aims.limits.second
         # By how much joint 2 follows is only known to first order; joint 1 is at its best in any case.
@@ -252,6 +287,26 @@ class _Descent:
         self._damping = np.clip(
             np.where(better, 0.2 * self._damping, 8.0 * self._damping), _LEAST_DAMPING, _MOST_DAMPING
         )
+
+
+    def _depths(self, residuals: Residuals) -> tuple[FloatArray, FloatArray]:
+        """Return the depths in obstacles, shape (N, n), m, and by differences how unknowns change them."""
+        here, motion, second = self._population, self._population.motion, self._aims.limits.second
+        depth = overlaps(self._task, here, self._postures.joints, margin=_MARGIN)
+        deeper = np.zeros((*depth.shape, here.unknowns.shape[1]))
+        if not depth.any():
+            return depth, deeper
+        deep = np.flatnonzero(depth.any(axis=1))
+        for unknown in range(deeper.shape[2]):
+            moved = here.unknowns[deep]
+            moved[:, unknown] += _DIFFERENCE
+            population = Population(here.robot, moved)
+            theta2 = self._postures.theta2 + residuals.following(_DIFFERENCE * motion[..., unknown])
+            theta2 = np.clip(theta2[deep], second.lower, second.upper)
+            joints = Postures.at(self._aims, population.kinematics, theta2).joints
+            changed = overlaps(self._task, population, joints, margin=_MARGIN)
+            deeper[deep, :, unknown] = (changed - depth[deep]) / _DIFFERENCE
+        return depth, deeper
 
 
 def _curvature_of_norm(

@@ -126,10 +126,10 @@ def _starts(
     if designs := exact_designs(task):
         first = np.union1d(first, nearest_to_designs(shapes, designs, _PER_DESIGN))
     valleys, distinct = Valleys.of(task, shapes.take(first)), _Distinct(task)
-    yield from distinct.of(valleys.promising)
     if not (quick or valleys.agreed):
+        yield from distinct.of(valleys.within_tolerance)
         valleys = valleys.explored(lambda: shapes.take(drawn(_REFINED, _FRESH)), rng, stop)
-        yield from distinct.of(valleys.promising)
+    yield from distinct.of(valleys.promising)
 
 
 class _Distinct:

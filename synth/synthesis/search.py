@@ -107,6 +107,8 @@ class Search:
                 no_better += 1
                 if no_better > min(_ALTERNATIVES_THAT_MISS, self.alternatives):
                     continue
+            if self._promises_all(start):
+                self.polishing.keep(start.arm, start.joints)
             self.polishing.polish(start)
             if self._led_astray(start) and self.polishing.keep(start.arm, start.joints).verification.possible:
                 self.polishing.polish(start, near=True)
@@ -115,6 +117,10 @@ class Search:
             self._report()
             if self.starts >= self.starts_at_most or self.starts_found > self.alternatives:
                 return
+
+    def _promises_all(self, start: Start) -> bool:
+        """Whether a start may reach every target as it is: it was refined, and steps of the program may lose it."""
+        return start.cost * len(self.part.targets) <= float(self.part.tolerances.min()) ** 2
 
     def _may_be_better(self, start: Start) -> bool:
         """Whether a start may lead to a better shape than the best: not if its valley is above that."""

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.synthesis.population import ARCS, Population, into_limits
-from synth.synthesis.refinement import Refined, level, refine
+from synth.synthesis.refinement import Refined, cleared, level, refine
 from synth.synthesis.separation import overlaps
 from synth.task import Objective
 
@@ -51,6 +51,7 @@ _AGREEING, _SAME = 0.05, 1e-3
 # with some targets on the wrong one.
 _SHEETS = 4e-6
 _TINY = 1e-14  # m^2
+_CLEARED = 24  # shapes that are moved out of obstacles
 _OF_A_KIND = 4
 _LEVELLED = 48  # valleys whose least worst miss is looked for
 
@@ -79,11 +80,26 @@ class Valleys:
 
     @property
     def promising(self) -> Refined:
-        """The best shapes, of each valley some; where the worst miss counts, with the least they can have."""
+        """The best shapes, moved out of obstacles; where the worst miss counts, with the least they can have."""
+        best = self._out_of_obstacles()
         if self.task.objective is Objective.LEAST_SQUARES:
-            return self.best
-        some = self.best.take(_some_of_each_kind(self.best, 1)[:_LEVELLED])
+            return best
+        some = best.take(_some_of_each_kind(best, 1)[:_LEVELLED])
         return _weighed(self.task, level(self.task, some))
+
+    @property
+    def within_tolerance(self) -> Refined:
+        """The promising shapes that nearly meet all targets."""
+        promising = self.promising
+        near = promising.cost * len(self.task.targets) <= float(self.task.tolerances.min()) ** 2
+        return promising.take(np.flatnonzero(near))
+
+    def _out_of_obstacles(self) -> Refined:
+        best = self.best.best(_CLEARED)
+        deep = np.flatnonzero(overlaps(self.task, best.population, best.joints).any(axis=1))
+        if not len(deep):
+            return self.best
+        return Refined.joined([self.best, _weighed(self.task, cleared(self.task, best.take(deep)))])
 
     @property
     def agreed(self) -> bool:
