@@ -20,10 +20,13 @@ from synth.synthesis.bound.forms import Circle
 from synth.synthesis.bound.limits import Limits, ReachTable
 from synth.synthesis.bound.linear import combined, multipliers
 from synth.synthesis.population import Population
+from synth.synthesis.watch import Watch
 
 
-def never():
-    return False
+def ended_after(looks):
+    """Return a watch that is up once it was asked so many times."""
+    left = iter(range(looks))
+    return Watch(stop=lambda: next(left, None) is None)
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -282,10 +285,7 @@ def test_a_planted_shape_is_never_below_the_bound():
     for seed in (5, 6):
         task, arm = planted_task(seed, 6)
         # Nothing better than a centimetre is known, so the proof has all room to be wrong.
-        looks = iter(range(40))
-        bound = prove(
-            task, 0.01, np.zeros(6), tightest=0.5e-3, stop=lambda looks=looks: next(looks, None) is None
-        )
+        bound = prove(task, 0.01, np.zeros(6), tightest=0.5e-3, watch=ended_after(40))
         assert verify(task, arm).found
         assert bound.lower_bound <= verify(task, arm).misses.max() + 1e-12
 
@@ -303,15 +303,15 @@ def test_tolerances_scale_the_bound():
     task = noisy_task(5)
     wide = replace(task, targets=tuple(replace(t, tolerance=4e-3) for t in task.targets))
     misses = np.zeros(len(task.targets))
-    tight = prove(task, 1.7e-3, misses, tightest=1e-3, stop=never)
-    same = prove(wide, 1.7e-3, misses, tightest=4e-3, stop=never)
+    tight = prove(task, 1.7e-3, misses, tightest=1e-3, watch=Watch())
+    same = prove(wide, 1.7e-3, misses, tightest=4e-3, watch=Watch())
     assert tight.lower_bound == same.lower_bound
     assert tight.excludes
     assert not same.excludes
     # A target with four times the tolerance of the others counts a quarter of its miss.
     first = replace(task.targets[0], tolerance=4e-3)
     mixed = prove(
-        replace(task, targets=(first, *task.targets[1:])), 1.7e-3, misses, tightest=1e-3, stop=never
+        replace(task, targets=(first, *task.targets[1:])), 1.7e-3, misses, tightest=1e-3, watch=Watch()
     )
     assert mixed.lower_bound <= tight.lower_bound
 
@@ -320,18 +320,21 @@ def test_no_bound_is_better_than_a_false_one():
     task = noisy_task(2)
     rigid = replace(ROBOT.rigid_link, d35=Interval(0.4, 0.5))
     free = replace(task, robot=replace(ROBOT, rigid_link=rigid))
-    assert prove(free, 0.01, np.zeros(7), tightest=1e-3, stop=never) is None
+    assert prove(free, 0.01, np.zeros(7), tightest=1e-3, watch=Watch()) is None
 
 
 def test_a_proof_that_is_stopped_keeps_its_bound():
     task, bounds = noisy_task(5), []
-    whole = prove(task, 1.7e-3, np.zeros(5), tightest=1e-3, stop=never, progress=bounds.append)
+    whole = prove(
+        task,
+        1.7e-3,
+        np.zeros(5),
+        tightest=1e-3,
+        watch=Watch(report=lambda told: bounds.append(told.lower_bound)),
+    )
     assert bounds == sorted(bounds)
     for steps in (0, len(bounds) // 2, len(bounds) - 1):
-        looks = iter(range(steps))
-        part = prove(
-            task, 1.7e-3, np.zeros(5), tightest=1e-3, stop=lambda looks=looks: next(looks, None) is None
-        )
+        part = prove(task, 1.7e-3, np.zeros(5), tightest=1e-3, watch=ended_after(steps))
         assert part.lower_bound <= whole.lower_bound
 
 

@@ -11,20 +11,17 @@ from synth.synthesis.population import Population
 from synth.synthesis.refinement import Refined
 from synth.synthesis.screening import starts
 from synth.synthesis.valleys import Valleys
-
-
-def never():
-    return False
+from synth.synthesis.watch import Watch
 
 
 def drawn(seed, count=40):
     return Population.sample(ROBOT, count, np.random.default_rng(seed))
 
 
-def explored(task, seed, stop=never, count=40):
+def explored(task, seed, stop=None, count=40):
     rng = np.random.default_rng(seed)
     valleys = Valleys.of(task, drawn(seed, count))
-    return valleys, valleys.explored(lambda: Population.sample(ROBOT, 40, rng), rng, stop)
+    return valleys, valleys.explored(lambda: Population.sample(ROBOT, 40, rng), rng, Watch(stop=stop))
 
 
 def valleys_of(*costs, drawn):

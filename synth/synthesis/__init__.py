@@ -3,10 +3,10 @@
 from synth.synthesis.bound import Bound
 from synth.synthesis.motion import MOST_MOTIONS, Motion, motions
 from synth.synthesis.release import explain
-from synth.synthesis.search import Progress
-from synth.synthesis.solution import Design, NotFoundError, Release, Solution, Status, TargetResult, Timing
+from synth.synthesis.solution import Design, NotFoundError, Release, Solution, Status, TargetResult
 from synth.synthesis.solve import solve
 from synth.synthesis.verification import Verification, Violation, verify
+from synth.synthesis.watch import Progress, Timing
 
 __all__ = [
     "MOST_MOTIONS",

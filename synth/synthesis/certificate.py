@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.synthesis.bound import LinkEnd
     from synth.synthesis.solution import Design
+    from synth.synthesis.watch import Watch
     from synth.task import Task
 
 _GAP = 1e-4  # m: the proof ends when the bound is as near as this to the best shape
@@ -43,8 +44,7 @@ class Certifier:
         tightest: The tightest tolerance of the whole task, m.
         designs: The shapes found so far, all of which the hardware can take.
         keep: Checks a shape and puts it to the designs if it is possible.
-        stop: Whether to end with what there is.
-        progress: Told the least worst weighted miss found and the bound so far, m.
+        watch: Told of each step; when it is up, the proof ends with what there is.
         seed: Seed of the search.
     """
 
@@ -52,8 +52,7 @@ class Certifier:
     tightest: float
     designs: list[Design]
     keep: Callable[[Arm, FloatArray], Design]
-    stop: Callable[[], bool]
-    progress: Callable[[float, float], None]
+    watch: Watch
     seed: int
     _rng: np.random.Generator = field(init=False)
     _minimax: Task = field(init=False)
@@ -70,7 +69,7 @@ class Certifier:
             self._polish(design.arm, design.verification.joints)
         if self._best() > _GAP:
             # The shapes so far were searched for by the task's own objective, maybe another one.
-            for start in islice(starts(self._minimax, self.seed, stop=self.stop), _STARTS):
+            for start in islice(starts(self._minimax, self.seed, watch=self.watch), _STARTS):
                 self._polish(start.arm, start.joints)
         return prove(
             self.task,
@@ -78,9 +77,8 @@ class Certifier:
             self._best_misses(),
             tightest=self.tightest,
             gap=_GAP,
-            stop=self.stop,
+            watch=self.watch,
             improve=self._improve,
-            progress=lambda lower: self.progress(self._best(), lower),
         )
 
     def _worst(self, design: Design) -> float:
@@ -99,7 +97,7 @@ class Certifier:
     def _polish(self, arm: Arm, joints: FloatArray, *, near: bool = False) -> None:
         try:
             program = shared_nlp(Structure.of(self._minimax), ARCS, near, threading.get_ident())
-            answer = program.solve(self._minimax, arm, joints, self.stop)
+            answer = program.solve(self._minimax, arm, joints, self.watch)
         except SolverError:
             return  # other starts may do
         self.keep(answer.arm, answer.joints)

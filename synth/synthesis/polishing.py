@@ -17,13 +17,13 @@ from synth.synthesis.verification import verify
 from synth.task import Objective
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from synth.arrays import FloatArray
     from synth.robot import Arm
-    from synth.synthesis.clock import Clock
     from synth.synthesis.screening import Start
     from synth.synthesis.separation import Separation
+    from synth.synthesis.watch import Watch
     from synth.task import Task
 
 # How often planes between the arm and obstacles are taken anew where the solver ended, until a shape is found.
@@ -38,16 +38,14 @@ class Polishing:
 
     Attributes:
         task: The task.
-        clock: Counts the time.
-        out_of_time: Asked many times a second; when it says yes, the solver ends with what it has.
+        watch: Counts the time; when it is up, the solver ends with what it has.
         designs: The shapes so far that the hardware can take.
         blocked: Those that it cannot.
         breakdowns: What the solver said where it broke down.
     """
 
     task: Task
-    clock: Clock
-    out_of_time: Callable[[], bool]
+    watch: Watch
     designs: list[Design] = field(default_factory=list)
     blocked: list[Design] = field(default_factory=list)
     breakdowns: list[str] = field(default_factory=list)
@@ -67,10 +65,10 @@ class Polishing:
         arm, joints, itself = start.arm, start.joints, False
         best = math.inf
         for _ in range(1 if self.found else _PLANES_ANEW):
-            with self.clock.on("solving"):
+            with self.watch.on("solving"):
                 planes = separations(self.task, arm, joints, itself=itself)
                 try:
-                    answer = self._nlp(planes, near=near).solve(self.task, arm, joints, self.out_of_time)
+                    answer = self._nlp(planes, near=near).solve(self.task, arm, joints, self.watch)
                 except SolverError as error:
                     self.breakdowns.append(str(error))
                     return
@@ -84,7 +82,7 @@ class Polishing:
             objective = rank(self.task, design)[1]
             done = not planes or objective > _GAINED * best or design.verification.found
             best = min(best, objective)
-            if (done and not clashes) or self.out_of_time():
+            if (done and not clashes) or self.watch.is_up():
                 return
 
     def _nlp(self, planes: Sequence[Separation], *, near: bool) -> SynthesisNlp:
@@ -97,7 +95,7 @@ class Polishing:
 
     def keep(self, arm: Arm, joints: FloatArray) -> Design:
         """Check a shape, keep it where it belongs, and return it."""
-        with self.clock.on("verifying"):
+        with self.watch.on("verifying"):
             design = Design(arm, verify(self.task, arm, joints))
         (self.designs if design.verification.possible else self.blocked).append(design)
         return design

@@ -288,7 +288,6 @@ class _Descent:
             np.where(better, 0.2 * self._damping, 8.0 * self._damping), _LEAST_DAMPING, _MOST_DAMPING
         )
 
-
     def _depths(self, residuals: Residuals) -> tuple[FloatArray, FloatArray]:
         """Return the depths in obstacles, shape (N, n), m, and by differences how unknowns change them."""
         here, motion, second = self._population, self._population.motion, self._aims.limits.second

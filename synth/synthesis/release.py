@@ -18,6 +18,7 @@ from synth.robot import BasePose, Interval
 from synth.synthesis.solution import Release
 from synth.synthesis.solve import follow
 from synth.synthesis.verification import verify
+from synth.synthesis.watch import Watch
 from synth.task import Obstacle
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from synth.geometry import Solid
     from synth.robot import MalleableLink
     from synth.synthesis.solution import Design, Solution
+    from synth.synthesis.watch import Progress
     from synth.task import Task
 
 # How far a limit is relaxed, as a share of the most, and how many starts are polished then.
@@ -49,12 +51,20 @@ class _Limit:
     sentence: Callable[[float], str]
 
 
-def explain(solution: Solution, *, stop: Callable[[], bool] | None = None) -> Solution:
+def explain(
+    solution: Solution,
+    *,
+    time_limit: float = math.inf,
+    stop: Callable[[], bool] | None = None,
+    progress: Callable[[Progress], None] | None = None,
+) -> Solution:
     """Return a solution with what would release its task, if it was not met; it takes some seconds.
 
     Args:
         solution: What a synthesis found; of one that found every target nothing blocks.
-        stop: Asked between the steps; when it says yes, what is known so far is returned.
+        time_limit: Time after which what is known so far is returned, s.
+        stop: Asked many times a second; when it says yes, what is known so far is returned.
+        progress: Told of each limit that is looked at, and many times a second that it goes on.
 
     Returns:
         The same with `releases`, one for each limit that does alone, the least change first, the base
@@ -63,26 +73,28 @@ def explain(solution: Solution, *, stop: Callable[[], bool] | None = None) -> So
     """
     if solution.found:
         return solution
-    stop = stop or (lambda: False)
+    watch = Watch(time_limit, stop=stop, report=progress)
     found = []
     for limit in _limits(solution.task):
-        if stop():
+        if watch.is_up():
             break
-        release = _released(limit, solution, stop)
+        watch.tell(phase=f"relaxing: {limit.name}")
+        release = _released(limit, solution, watch)
         if release is not None and release.share < _NOTHING:
-            return follow(solution.task, [release.design], seed=solution.seed)
+            return follow(solution.task, [release.design], seed=solution.seed, watch=watch.aside())
         if release is not None:
             found.append(release)
     found.sort(key=lambda release: release.share)
-    moved = None if stop() else _base_moved(solution, stop)
+    watch.tell(phase="moving the base")
+    moved = None if watch.is_up() else _base_moved(solution, watch)
     return replace(solution, releases=tuple(found if moved is None else [*found, moved]))
 
 
-def _released(limit: _Limit, solution: Solution, stop: Callable[[], bool]) -> Release | None:
+def _released(limit: _Limit, solution: Solution, watch: Watch) -> Release | None:
     """Relax one limit more and more, then tighten it: as far as a shape allows, then as shapes follow."""
     for share, starts in _RELAXED:
         most = share * limit.most
-        designs = follow(limit.relaxed(most), solution.designs, starts=starts, stop=stop).designs
+        designs = follow(limit.relaxed(most), solution.designs, starts=starts, watch=watch.aside()).designs
         needs = [_needed(limit, design, most) for design in designs]
         if needs and min(needs) < math.inf:
             break
@@ -90,9 +102,9 @@ def _released(limit: _Limit, solution: Solution, stop: Callable[[], bool]) -> Re
         return None
     best = int(np.argmin(needs))
     too_little, enough, design = 0.0, needs[best], designs[best]
-    while enough - too_little > _RESOLUTION * enough and not stop():
+    while enough - too_little > _RESOLUTION * enough and not watch.is_up():
         amount = 0.5 * (too_little + enough)
-        followed = follow(limit.relaxed(amount), [design])
+        followed = follow(limit.relaxed(amount), [design], watch=watch.aside())
         if followed.found:
             enough, design = amount, followed.best
         else:
@@ -204,7 +216,7 @@ def _with_less_of(task: Task, index: int, less: float) -> Task:
     return replace(task, obstacles=tuple(kept))
 
 
-def _base_moved(solution: Solution, stop: Callable[[], bool]) -> Release | None:
+def _base_moved(solution: Solution, watch: Watch) -> Release | None:
     """Move the base by what targets are missed on average, again and again, then back as far as may be.
 
     With its joints as they are, an arm whose base moves takes the end effector along.
@@ -218,11 +230,11 @@ def _base_moved(solution: Solution, stop: Callable[[], bool]) -> Release | None:
 
     shift, designs = np.zeros(3), solution.designs[:1]
     for _ in range(_BASE_STEPS):
-        if not designs or stop() or np.linalg.norm(shift) > _FARTHEST_BASE:
+        if not designs or watch.is_up() or np.linalg.norm(shift) > _FARTHEST_BASE:
             return None
         check = designs[0].verification
         shift = shift + np.mean(task.table.positions - check.reached, axis=0)
-        followed = follow(moved(shift), designs)
+        followed = follow(moved(shift), designs, watch=watch.aside())
         designs = followed.designs
         if followed.found:
             break
@@ -231,7 +243,7 @@ def _base_moved(solution: Solution, stop: Callable[[], bool]) -> Release | None:
     too_little, enough = 0.0, 1.0
     for _ in range(_HALVINGS):
         part = 0.5 * (too_little + enough)
-        followed = follow(moved(part * shift), designs)
+        followed = follow(moved(part * shift), designs, watch=watch.aside())
         if followed.found:
             enough, designs = part, followed.designs
         else:

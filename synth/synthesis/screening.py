@@ -18,10 +18,11 @@ from synth.synthesis.exact_starts import exact_designs, nearest_to_designs
 from synth.synthesis.population import ARM_LENGTH, Population
 from synth.synthesis.refinement import relative_weights
 from synth.synthesis.valleys import Valleys
+from synth.synthesis.watch import Watch
 from synth.task import Objective
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
     from numpy.typing import NDArray
 
@@ -67,22 +68,20 @@ class Start:
     cost: float = 0.0
 
 
-def starts(
-    task: Task, seed: int, *, quick: bool = False, stop: Callable[[], bool] = lambda: False
-) -> Iterator[Start]:
+def starts(task: Task, seed: int, *, quick: bool = False, watch: Watch | None = None) -> Iterator[Start]:
     """Yield distinct start points, the most promising first.
 
     Args:
         task: The task.
         seed: Seed of the random shapes.
         quick: Whether to end with what the first, small step finds.
-        stop: Asked now and then; when it says yes, no more is searched for.
+        watch: When it is up, no more is searched for.
 
     Yields:
         Start points; none where no random shape respects the limits and the floor.
     """
     rng = np.random.default_rng([seed, 1])
-    for start in _starts(_fewer_targets(task, rng), seed, rng, stop, quick=quick):
+    for start in _starts(_fewer_targets(task, rng), seed, rng, watch or Watch(), quick=quick):
         if len(start.joints) == len(task.targets):
             yield start
         else:
@@ -108,9 +107,7 @@ def _shapes(robot: Robot, floor: float | None, seed: int) -> Population:
     return population if floor is None else population.take(population.end[1][:, 2] > floor)
 
 
-def _starts(
-    task: Task, seed: int, rng: np.random.Generator, stop: Callable[[], bool], *, quick: bool
-) -> Iterator[Start]:
+def _starts(task: Task, seed: int, rng: np.random.Generator, watch: Watch, *, quick: bool) -> Iterator[Start]:
     """Yield start points for a task of few targets, each step with more effort than the one before."""
     shapes = _shapes(task.robot, task.floor, seed)
     if not len(shapes.length):
@@ -128,7 +125,7 @@ def _starts(
     valleys, distinct = Valleys.of(task, shapes.take(first)), _Distinct(task)
     if not (quick or valleys.agreed):
         yield from distinct.of(valleys.within_tolerance)
-        valleys = valleys.explored(lambda: shapes.take(drawn(_REFINED, _FRESH)), rng, stop)
+        valleys = valleys.explored(lambda: shapes.take(drawn(_REFINED, _FRESH)), rng, watch)
     yield from distinct.of(valleys.promising)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -24,10 +23,10 @@ from synth.synthesis.verification import verify
 from synth.task import Objective
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
 
     from synth.synthesis.bound import Bound
-    from synth.synthesis.clock import Clock
+    from synth.synthesis.watch import Watch
     from synth.task import Task
 
 _STARTS_AT_MOST = 48
@@ -41,20 +40,6 @@ _PROOF_TIME = 60.0  # s
 _VERIFIED_AT_MOST = 20_000
 
 
-@dataclass(frozen=True)
-class Progress:
-    """How far a search is: start points polished, of at most how many, and the best worst miss, m.
-
-    While a proof runs, `lower_bound` is the bound so far, m.
-    """
-
-    starts: int
-    starts_at_most: int
-    worst_miss: float
-    found: bool
-    lower_bound: float | None = None
-
-
 @dataclass
 class Search:
     """One run of `solve`: the designs so far, for the part of the task that is searched with."""
@@ -62,20 +47,18 @@ class Search:
     task: Task
     part: Task
     seed: int
-    clock: Clock
-    stop: Callable[[], bool]
-    progress: Callable[[Progress], None]
+    watch: Watch
     alternatives: int = ALTERNATIVES
     starts: int = 0
     starts_at_most: int = 0
     starts_found: int = 0  # since a shape was found, that start included
-    interrupted: bool = False
+    complete: bool = False  # a proof may be cut short all the same
     bound: Bound | None = None
 
     @cached_property
     def polishing(self) -> Polishing:
         """The shapes so far."""
-        return Polishing(self.part, self.clock, self._out_of_time)
+        return Polishing(self.part, self.watch)
 
     @cached_property
     def _impossible(self) -> tuple[str, ...]:
@@ -87,7 +70,7 @@ class Search:
             arm = in_equal_arcs(replace(design.arm, robot=self.task.robot, base=self.task.base))
             self.polishing.polish(Start(arm, arm.closest_joints(self.part.table.positions)[0]), near=True)
             self.starts += 1
-            if self.polishing.found or self._out_of_time():
+            if self.polishing.found or self.watch.is_up():
                 break
         return self.polishing.found
 
@@ -96,7 +79,7 @@ class Search:
         self.starts_at_most = self.starts + (most or self._usual_starts)
         no_better = 0
         for start in self._start_points(quick=most is not None or bool(self._impossible)):
-            if self._out_of_time():
+            if self.watch.is_up():
                 # A start that was not polished is better than nothing.
                 if not self.polishing.designs:
                     self.polishing.keep(start.arm, start.joints)
@@ -139,21 +122,18 @@ class Search:
 
     def prove(self) -> None:
         """Bound how little any shape can miss, unless the search was stopped already."""
-        if self.interrupted:
+        if self.watch.interrupted:
             return
-        until = time.perf_counter() + _PROOF_TIME
+        self.complete = True
         certifier = Certifier(
             self.part,
             float(self.task.tolerances.min()),
             self.polishing.designs,
             self.polishing.keep,
-            lambda: self.stop() or self.clock.is_up() or time.perf_counter() > until,
-            lambda worst, lower: self.progress(
-                Progress(self.starts, self.starts_at_most, worst, self.polishing.found, lower)
-            ),
+            self.watch.within(_PROOF_TIME),
             self.seed,
         )
-        with self.clock.on("proving"):
+        with self.watch.on("proving"):
             self.bound = certifier.certificate()
 
     def _bound_for(self, designs: tuple[Design, ...]) -> Bound | None:
@@ -177,7 +157,7 @@ class Search:
             self.seed,
             designs,
             self.starts,
-            self.clock.timing(),
+            self.watch.timing(),
             self._bound_for(designs),
         )
 
@@ -186,9 +166,9 @@ class Search:
         return _STARTS_WHEN_IMPOSSIBLE if self._impossible else _STARTS_AT_MOST
 
     def _start_points(self, *, quick: bool) -> Iterator[Start]:
-        candidates = starts(self.part, self.seed, quick=quick, stop=self._out_of_time)
+        candidates = starts(self.part, self.seed, quick=quick, watch=self.watch)
         while True:
-            with self.clock.on("screening"):
+            with self.watch.on("screening"):
                 start = next(candidates, None)
             if start is None:
                 return
@@ -204,7 +184,7 @@ class Search:
             return Status.PROVEN_IMPOSSIBLE, (self.bound.sentence,)
         if self.polishing.breakdowns and not (self.polishing.designs or self.polishing.blocked):
             return Status.FAILED, tuple(self.polishing.breakdowns[:1])
-        status = Status.LIMIT if self.interrupted else Status.BEST_EFFORT
+        status = Status.LIMIT if self.watch.interrupted and not self.complete else Status.BEST_EFFORT
         return status, why_no_better(self.task, designs, self.polishing.blocked)
 
     def _changing_little(self) -> list[Design]:
@@ -221,11 +201,11 @@ class Search:
         positions, axes = np.array([end for _, end in ends]), np.array([frame[:, 0] for frame, _ in ends])
         bent_again = []
         for where in (ANYWHERE, Interval.fixed(0.0)):
-            with self.clock.on("solving"):
+            with self.watch.on("solving"):
                 shapes = links_to_poses(
                     self.task.robot.link, positions, axes, current=current, theta1=where, seed=self.seed
                 )
-            with self.clock.on("verifying"):
+            with self.watch.on("verifying"):
                 for arm, shape in zip(best, shapes, strict=True):
                     if shape is not None:
                         nearer = replace(arm, shape=shape)
@@ -236,15 +216,15 @@ class Search:
         """Return designs improved for all targets, and verified with them, in their order."""
         if self.part is self.task:
             return designs
-        with self.clock.on("solving"):
+        with self.watch.on("solving"):
             arms = ranked(self.task, [design.arm for design in designs], self.seed)
         whole = []
         for found in arms[: max(1, _VERIFIED_AT_MOST // len(self.task.targets))]:
-            with self.clock.on("solving"):
+            with self.watch.on("solving"):
                 arm = improved(self.task, found)
                 if self.task.objective is Objective.MINIMAX:
                     arm = levelled(self.task, arm)
-            with self.clock.on("verifying"):
+            with self.watch.on("verifying"):
                 check = verify(self.task, arm)
                 # The steps know neither floor nor obstacles.
                 if not check.possible:
@@ -255,12 +235,14 @@ class Search:
                 self.polishing.blocked.append(Design(arm, check))
         return best_of(self.task, whole)
 
-    def _out_of_time(self) -> bool:
-        self.interrupted = self.interrupted or self.stop() or self.clock.is_up()
-        return self.interrupted
-
     def _report(self) -> None:
         worst = min(
             (float(design.verification.misses.max()) for design in self.polishing.designs), default=math.inf
         )
-        self.progress(Progress(self.starts, self.starts_at_most, worst, self.polishing.found))
+        self.watch.tell(
+            starts=self.starts,
+            starts_at_most=self.starts_at_most,
+            worst_miss=worst,
+            found=self.polishing.found,
+            phase="polishing shapes",
+        )

@@ -79,9 +79,7 @@ def separations(task: Task, arm: Arm, joints: FloatArray, *, itself: bool) -> tu
     return tuple(planes + list(_from_itself(arm, joints)) if itself else planes)
 
 
-def overlaps(
-    task: Task, population: Population, joints: FloatArray, *, margin: float = 0.0
-) -> FloatArray:
+def overlaps(task: Task, population: Population, joints: FloatArray, *, margin: float = 0.0) -> FloatArray:
     """Return how deep shapes are inside obstacles and inside themselves, at samples of tube and rod.
 
     Args:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from synth.robot import Arm
     from synth.synthesis.bound import Bound
     from synth.synthesis.verification import Verification
+    from synth.synthesis.watch import Timing
     from synth.task import Task
 
 
@@ -76,25 +77,6 @@ class TargetResult:
     clearance: float
     joints: FloatArray
     alternatives: FloatArray
-
-
-@dataclass(frozen=True)
-class Timing:
-    """Where the time went, s.
-
-    Attributes:
-        total: From call to return.
-        screening: Finding start points.
-        solving: Building and running the nonlinear program.
-        verifying: Checking what it found.
-        proving: Bounding what any shape can do.
-    """
-
-    total: float
-    screening: float
-    solving: float
-    verifying: float
-    proving: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -5,14 +5,15 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from synth.synthesis.clock import Clock
 from synth.synthesis.many_targets import part_of
-from synth.synthesis.search import ALTERNATIVES, Progress, Search
+from synth.synthesis.search import ALTERNATIVES, Search
+from synth.synthesis.watch import Watch
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from synth.synthesis.solution import Design, Solution
+    from synth.synthesis.watch import Progress
     from synth.task import Task
 
 
@@ -41,13 +42,13 @@ def solve(
         prove: Whether to bound how little any shape can miss; that takes seconds, a minute at most.
         time_limit: Time after which the best shape so far is returned, s.
         stop: Asked many times a second; when it says yes, the best shape so far is returned.
-        progress: Told after each start point, and of each step of the proof.
+        progress: Told of each step: of the search for start points, of each one polished, of the proof.
 
     Returns:
         The solution, whatever was found; its status says what it is worth.
     """
-    part = part_of(task, seed)
-    search = Search(task, part, seed, Clock(time_limit), stop or _never, progress or _silent, alternatives)
+    watch = Watch(time_limit, stop=stop, report=progress)
+    search = Search(task, part_of(task, seed), seed, watch, alternatives)
     near = warm_start.designs if warm_start is not None and warm_start.task.robot == task.robot else ()
     if not search.follow(near):
         search.run()
@@ -62,7 +63,7 @@ def follow(
     *,
     starts: int = 0,
     seed: int = 0,
-    stop: Callable[[], bool] | None = None,
+    watch: Watch | None = None,
 ) -> Solution:
     """Polish shapes for a task nearby, maybe of a robot nearly the same, and search little farther.
 
@@ -71,17 +72,9 @@ def follow(
         designs: Shapes, the most promising first.
         starts: How many start points are polished, too, if none of the shapes will do.
         seed: As for `solve`.
-        stop: As for `solve`.
+        watch: Says when to end with what there is.
     """
-    search = Search(task, part_of(task, seed), seed, Clock(math.inf), stop or _never, _silent)
+    search = Search(task, part_of(task, seed), seed, watch or Watch())
     if not search.follow(designs) and starts:
         search.run(starts)
     return search.solution()
-
-
-def _never() -> bool:
-    return False
-
-
-def _silent(_progress: Progress) -> None:
-    pass

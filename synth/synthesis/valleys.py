@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
+    from synth.synthesis.watch import Watch
     from synth.task import Task
 
 # Rounds of the three steps; shapes kept; of these the parents, which miss differently; those of half of the
@@ -111,21 +112,20 @@ class Valleys:
         agreeing = np.count_nonzero(self.fresh <= (1.0 + _SAME) * least)
         return bool(least > _SHEETS and agreeing >= max(_AGREEING * self.drawn, _ENOUGH))
 
-    def explored(
-        self, draw: Callable[[], Population], rng: np.random.Generator, stop: Callable[[], bool]
-    ) -> Valleys:
+    def explored(self, draw: Callable[[], Population], rng: np.random.Generator, watch: Watch) -> Valleys:
         """Return what is known after a search for better valleys.
 
         Args:
             draw: Draws fresh shapes.
             rng: Source of randomness.
-            stop: Asked after each step; when it says yes, the search ends.
+            watch: Told of each step; when it is up, the search ends.
         """
         now = replace(self, best=self.best.best(_KEPT))
         for _ in range(_ROUNDS):
             for step in (_bent, _swapped):
-                if now.agreed or stop():
+                if now.agreed or watch.is_up():
                     return now
+                watch.tell(phase="looking among valleys")
                 children = step(self.task, now.best.take(_parents(now.best)), rng)
                 now = now.with_better(children)
             now = now.with_fresh(draw())

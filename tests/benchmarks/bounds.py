@@ -22,6 +22,7 @@ from sampled_shapes import contradictions, noisy_task, shapes_about, task_about
 
 from synth.synthesis import Design, solve, verify
 from synth.synthesis.certificate import Certifier
+from synth.synthesis.watch import Watch
 
 GOALS = ((10.0, 0.5e-3), (60.0, 0.1e-3))  # s, m
 ROUNDING = 1e-9  # m
@@ -46,13 +47,16 @@ def outcome(seed, clock, seeds, limit):
             kept.append(design)
         return design
 
+    def tell(now):
+        if now.lower_bound is not None:
+            told.append((clock() - began, now.worst_miss, now.lower_bound))
+
     certifier = Certifier(
         task,
         float(task.tolerances.min()),
         kept,
         keep,
-        lambda: clock() - began > limit,
-        lambda best, lower: told.append((clock() - began, best, lower)),
+        Watch(limit, report=tell, clock=clock),
         0,
     )
     bound = certifier.certificate()

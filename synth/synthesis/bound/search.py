@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.synthesis.bound.ends import LinkEnd
+    from synth.synthesis.watch import Watch
     from synth.task import Task
 
 # Taken off every bound, m for each metre of the robot's size: see "Rounding" in docs/bound.md.
@@ -79,9 +80,8 @@ def prove(
     *,
     tightest: float,
     gap: float = 1e-4,
-    stop: Callable[[], bool],
+    watch: Watch,
     improve: Callable[[LinkEnd], float] | None = None,
-    progress: Callable[[float], None] | None = None,
 ) -> Bound | None:
     """Bound the worst weighted miss over all shapes that the hardware allows from below.
 
@@ -94,10 +94,9 @@ def prove(
         misses: The misses of that shape, shape (n,), m: they tell which targets are hard.
         tightest: The tightest tolerance: a miss counts by it over its target's tolerance, m.
         gap: The proof ends when the bound is as near as this to `best_found`, m.
-        stop: Asked many times a second; when it says yes, the bound so far is returned.
+        watch: Told the bound so far, many times a second; when it is up, that one is returned.
         improve: Looks for a shape whose link ends about so, which promises less than the best found, and
             returns the worst weighted miss of the best shape now, m.
-        progress: Told the bound so far, m.
 
     Returns:
         The bound; None if the rigid link is not fixed.
@@ -121,7 +120,7 @@ def prove(
     boxes = Boxes.cover(link.length.upper, (min(lowest, d12), d12 + link.length.upper))
     promising = Promising(bounds)
     count, lower = 0, 0.0
-    while len(boxes) and len(boxes) < _BOXES_AT_MOST and not stop():
+    while len(boxes) and len(boxes) < _BOXES_AT_MOST and not watch.is_up():
         batch = min(_BATCH, len(boxes))
         first = np.zeros(len(boxes), dtype=bool)
         first[np.argpartition(boxes.bound, batch - 1)[:batch]] = True
@@ -136,8 +135,7 @@ def prove(
             enough = min(enough, best_found - wanted)
             boxes = boxes.take(boxes.bound < enough)
         lower = min(float(boxes.bound.min(initial=enough)), enough)
-        if progress is not None:
-            progress(lower)
+        watch.tell(worst_miss=best_found, lower_bound=lower, phase="proving")
     return Bound(max(lower - rounding, 0.0), best_found, tightest, count)
 
 

@@ -10,10 +10,11 @@ import numpy as np
 from synth.errors import SolverError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from synth.arrays import FloatArray
     from synth.synthesis.nlp.blocks import Constraints, Unknowns
+    from synth.synthesis.watch import Watch
 
 _OPTIONS = {
     "print_time": False,
@@ -76,19 +77,19 @@ class Ipopt:
         elif nearly_clear:
             options |= _NEARLY_CLEAR
         # The solver keeps no reference to its callback: this object must.
-        self._watch = _Watch(problem["x"].numel(), problem["g"].numel(), parameters.numel())
-        options["iteration_callback"] = self._watch
+        self._iterations = _Iterations(problem["x"].numel(), problem["g"].numel(), parameters.numel())
+        options["iteration_callback"] = self._iterations
         self._solver = ca.nlpsol("synthesis", "ipopt", problem, options)
 
     def solve(
-        self, start: FloatArray, parameters: FloatArray, stop: Callable[[], bool] | None
+        self, start: FloatArray, parameters: FloatArray, watch: Watch | None
     ) -> tuple[FloatArray, str, int]:
         """Run from a start.
 
         Args:
             start: Values of the unknowns to start from.
             parameters: Values of the parameters.
-            stop: Asked once an iteration; when it says yes, the solver ends with what it has.
+            watch: Asked once an iteration; when it is up, the solver ends with what it has.
 
         Returns:
             The values of the unknowns where it ended, its own word for how, and the number of iterations.
@@ -96,10 +97,14 @@ class Ipopt:
         Raises:
             SolverError: It broke down without an answer.
             KeyboardInterrupt: The user interrupted it (it swallows the exception).
+            BaseException: What the watch raised, for the same reason only here.
         """
-        self._watch.stop = stop
+        self._iterations.watch, self._iterations.raised = watch, None
         x = self._solver(x0=start, p=parameters, **self._bounds)["x"]
-        self._watch.stop = None
+        raised = self._iterations.raised
+        self._iterations.watch = self._iterations.raised = None
+        if raised is not None:
+            raise raised
         statistics = self._solver.stats()
         status = str(statistics["return_status"])
         if status == "NonIpopt_Exception_Thrown":
@@ -110,15 +115,16 @@ class Ipopt:
         return values, status, int(statistics["iter_count"])
 
 
-class _Watch(ca.Callback):
+class _Iterations(ca.Callback):
     """Asked by Ipopt once an iteration whether to go on."""
 
     def __init__(self, unknowns: int, constraints: int, parameters: int) -> None:
         ca.Callback.__init__(self)
         self._rows = {"x": unknowns, "lam_x": unknowns, "f": 1, "g": constraints, "lam_g": constraints}
         self._rows["lam_p"] = parameters
-        self.stop: Callable[[], bool] | None = None
-        self.construct("watch", {})
+        self.watch: Watch | None = None
+        self.raised: BaseException | None = None
+        self.construct("iterations", {})
 
     def get_n_in(self) -> int:
         return int(ca.nlpsol_n_out())
@@ -133,4 +139,8 @@ class _Watch(ca.Callback):
         return ca.Sparsity.dense(self._rows.get(ca.nlpsol_out(index), 0), 1)
 
     def eval(self, _arguments: Sequence[ca.DM]) -> list[int]:
-        return [int(self.stop is not None and self.stop())]
+        try:
+            return [int(self.watch is not None and self.watch.is_up())]
+        except BaseException as error:  # noqa: BLE001 - raised again as soon as the solver has returned
+            self.raised = error
+            return [1]

@@ -40,12 +40,13 @@ from synth.synthesis.nlp.packing import pack, unpack
 from synth.task import Objective
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from synth.arrays import FloatArray
     from synth.robot import Arm
     from synth.synthesis.nlp.structure import Structure
     from synth.synthesis.separation import Separation
+    from synth.synthesis.watch import Watch
     from synth.task import Task
 
 # The weight of r * (bending energy) against squared misses in units of the tolerance. It shifts a
@@ -129,16 +130,14 @@ class SynthesisNlp:
         parameters = ca.vertcat(ca.vec(positions), weights, floor, steepest)
         self._ipopt = Ipopt(x, g, parameters, objective, near=near, nearly_clear=bool(planes))
 
-    def solve(
-        self, task: Task, start: Arm, joints: FloatArray, stop: Callable[[], bool] | None = None
-    ) -> NlpAnswer:
+    def solve(self, task: Task, start: Arm, joints: FloatArray, watch: Watch | None = None) -> NlpAnswer:
         """Polish a shape.
 
         Args:
             task: The task, of this structure.
             start: The robot in a shape of `arcs` equal arcs.
             joints: Joint angles for each target to start from, shape (n, 2), rad.
-            stop: Asked once an iteration; when it says yes, the solver ends with what it has.
+            watch: Asked once an iteration; when it is up, the solver ends with what it has.
 
         Returns:
             Where the solver stopped, whether or not that is any good.
@@ -151,7 +150,7 @@ class SynthesisNlp:
         floor, steepest = task.floor or 0.0, 2.0 * _LARGE_MISS * _OVERLAP_UNIT * float(weights.max())
         parameters = np.concatenate([task.positions.T.ravel(), weights, [floor, steepest]])
         values, status, iterations = self._ipopt.solve(
-            pack(task, start, joints, self._overlaps, weights), parameters, stop
+            pack(task, start, joints, self._overlaps, weights), parameters, watch
         )
         arm, found_joints = unpack(task, values, self._arcs)
         return NlpAnswer(arm, found_joints, status, iterations)

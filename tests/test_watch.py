@@ -1,0 +1,124 @@
+"""The watch: when it is up, whom it asks and tells, and that nothing swallows what these raise."""
+
+import math
+
+import pytest
+from planted import planted_task
+
+from synth.synthesis import solve
+from synth.synthesis.watch import Watch
+
+
+class Clock:
+    """A clock that a test sets."""
+
+    def __init__(self):
+        self.now = 100.0
+
+    def __call__(self):
+        return self.now
+
+    def fail_after(self, seconds):
+        self.now += seconds
+        raise ZeroDivisionError
+
+
+def test_it_is_up_when_the_time_is_and_stays_so():
+    clock = Clock()
+    watch = Watch(2.0, clock=clock)
+    clock.now += 1.5
+    assert not watch.is_up()
+    assert watch.remaining == pytest.approx(0.5)
+    clock.now += 1.0
+    assert not watch.interrupted  # nobody was told yet
+    assert watch.is_up()
+    assert watch.interrupted
+    assert watch.remaining == 0.0
+    assert Watch().remaining == math.inf
+
+
+def test_a_wish_to_stop_is_asked_for_until_it_is_there():
+    answers = iter([False, True])
+    watch = Watch(stop=lambda: next(answers))
+    assert [watch.is_up() for _ in range(3)] == [False, True, True]
+
+
+def test_the_time_of_parts_is_counted_also_where_they_fail():
+    clock = Clock()
+    watch = Watch(clock=clock)
+    with watch.on("solving"):
+        clock.now += 2.0
+    with pytest.raises(ZeroDivisionError), watch.on("solving"):
+        clock.fail_after(1.0)
+    clock.now += 4.0
+    timing = watch.timing()
+    assert (timing.solving, timing.screening, timing.total) == (3.0, 0.0, 7.0)
+
+
+def test_what_is_told_is_what_changed_of_what_was_told():
+    told = []
+    watch = Watch(report=told.append)
+    watch.tell(starts=3, phase="polishing shapes")
+    watch.tell(phase="proving", lower_bound=1e-3)
+    assert [(one.starts, one.phase, one.lower_bound) for one in told] == [
+        (3, "polishing shapes", None),
+        (3, "proving", 1e-3),
+    ]
+    Watch().tell(starts=1)  # to nobody
+
+
+def test_a_watch_within_another_is_up_with_either():
+    clock, told = Clock(), []
+    outer = Watch(10.0, report=told.append, clock=clock)
+    outer.tell(starts=5)
+    inner = outer.within(2.0)
+    inner.tell(phase="proving")
+    assert (told[-1].starts, told[-1].phase) == (5, "proving")
+    clock.now += 3.0
+    assert inner.is_up()
+    assert not outer.is_up()
+    later = outer.within(100.0)
+    clock.now += 8.0
+    assert later.is_up()
+
+
+def test_a_run_aside_obeys_the_watch_and_shows_that_it_is_alive():
+    clock, told = Clock(), []
+    outer = Watch(10.0, report=told.append, clock=clock)
+    outer.tell(phase="relaxing: floor")
+    clock.now += 4.0
+    inner = outer.aside()
+    inner.tell(phase="polishing shapes", starts=7)
+    assert [(one.phase, one.starts) for one in told] == [("relaxing: floor", 0)] * 2
+    with inner.on("solving"):
+        clock.now += 1.0
+    assert inner.timing().total == 1.0
+    assert outer.timing().solving == 0.0
+    clock.now += 9.0
+    assert inner.is_up()
+
+
+@pytest.mark.parametrize("after", [1, 3, 15])
+def test_what_a_users_question_raises_comes_through_the_solver(after):
+    asked = 0
+
+    def stop():
+        nonlocal asked
+        asked += 1
+        if asked > after:
+            raise ValueError("mine")
+        return False
+
+    task, _ = planted_task(15, 4)
+    with pytest.raises(ValueError, match="mine"):
+        solve(task, stop=stop)
+    assert asked == after + 1  # it is not asked again after it raised
+    assert solve(task).found  # and the solver of this thread still works
+
+
+def test_what_a_users_report_raises_comes_through():
+    def report(_):
+        raise ValueError("mine")
+
+    with pytest.raises(ValueError, match="mine"):
+        solve(planted_task(15, 4)[0], progress=report)
