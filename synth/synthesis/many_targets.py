@@ -18,6 +18,7 @@ from synth.robot import Interval, link_to_pose
 from synth.synthesis.population import Population, in_equal_arcs
 from synth.synthesis.postures import Aims, Postures
 from synth.synthesis.refinement import refine
+from synth.synthesis.thinning import thinned
 from synth.task import Objective
 
 if TYPE_CHECKING:
@@ -45,7 +46,8 @@ def part_of(task: Task, seed: int) -> Task:
     if len(task.targets) <= _MOST_TARGETS[task.objective]:
         return task
     # The worst miss of a part says little of the worst of all, and takes the program ten times as long.
-    return replace(_random_part(task, _PART, seed), objective=Objective.LEAST_SQUARES)
+    part = thinned(task, _PART, np.random.default_rng([seed, _PART]))
+    return replace(part, objective=Objective.LEAST_SQUARES)
 
 
 def ranked(task: Task, arms: Sequence[Arm], seed: int) -> list[Arm]:
@@ -63,12 +65,12 @@ def ranked(task: Task, arms: Sequence[Arm], seed: int) -> list[Arm]:
     missing: list[tuple[float, Arm]] = []
     reaching = []
     for arm in arms:
-        for candidate in _as_it_is_and_turned(some, arm):
+        for candidate in as_it_is_and_turned(some, arm):
             relative = _relative_misses(some, candidate)
             if np.all(relative <= np.sqrt(some.weights)):
                 reaching.append(candidate)
-                break
-            missing.append((float(np.mean(relative**2)), candidate))
+            else:
+                missing.append((float(np.mean(relative**2)), candidate))
     return [*reaching, *(arm for _, arm in sorted(missing, key=lambda pair: pair[0]))]
 
 
@@ -96,9 +98,16 @@ def improved(task: Task, arm: Arm) -> Arm:
     return arm
 
 
-def _as_it_is_and_turned(task: Task, arm: Arm) -> Iterator[Arm]:
-    """Yield an arm and, if one is asked for, another that is turned about axis 1."""
+def as_it_is_and_turned(task: Task, arm: Arm) -> Iterator[Arm]:
+    """Yield an arm and, if it misses a target, another that is turned about axis 1.
+
+    Args:
+        task: The task.
+        arm: An arm that was found for a part of its targets.
+    """
     yield arm
+    if np.all(_relative_misses(task, arm) <= np.sqrt(task.weights)):
+        return
     turned = _with_joint_1_clear(task, arm)
     if turned is not None:
         yield turned

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from synth.synthesis.watch import Watch
     from synth.task import Task
 
-# How often planes between the arm and obstacles are taken anew where the solver ended, until a shape is found.
+# How often planes before obstacles are taken anew where the solver ended, until a shape is found.
 _PLANES_ANEW = 5
 _GAINED = 0.9  # of the objective before: the least gain for which to go on
 _CLASHES = ("obstacle", "itself")

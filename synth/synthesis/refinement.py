@@ -43,7 +43,7 @@ _EXPONENTS = {
 _LEVELLING = tuple(12.0 * 1.5**k for k in range(1, 8)), tuple(12.0 * 1.5**k for k in range(8, 17))
 _LEVELLING_STEPS, _LEVELLED = 6, 10
 _LEVELLING_DAMPING = 1e-4
-# Steps out of obstacles, what is to be kept from them, m, and the differences of unknowns that tell which way.
+# Steps out of obstacles, what to keep from them, m, and the differences of unknowns that tell which way.
 _CLEARING, _MARGIN, _DIFFERENCE = 10, 4e-3, 1e-5
 _TOGETHER = 4000  # postures, so that the arrays stay in the cache
 # So many shapes with squared misses below this, m^2, are enough: the others need not arrive, too.

@@ -7,7 +7,7 @@ finds it nearly always, and looking at a shape is ten thousand times cheaper tha
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -15,8 +15,10 @@ import numpy as np
 
 from synth.synthesis.category_offsets import category_offsets
 from synth.synthesis.exact_starts import exact_designs, nearest_to_designs
+from synth.synthesis.many_targets import as_it_is_and_turned
 from synth.synthesis.population import ARM_LENGTH, Population
 from synth.synthesis.refinement import relative_weights
+from synth.synthesis.thinning import thinned
 from synth.synthesis.valleys import Valleys
 from synth.synthesis.watch import Watch
 from synth.task import Objective
@@ -81,20 +83,13 @@ def starts(task: Task, seed: int, *, quick: bool = False, watch: Watch | None = 
         Start points; none where no random shape respects the limits and the floor.
     """
     rng = np.random.default_rng([seed, 1])
-    for start in _starts(_fewer_targets(task, rng), seed, rng, watch or Watch(), quick=quick):
+    for start in _starts(thinned(task, _MOST_TARGETS, rng), seed, rng, watch or Watch(), quick=quick):
         if len(start.joints) == len(task.targets):
             yield start
-        else:
-            joints, misses = start.arm.closest_joints(task.table.positions)
-            yield replace(start, joints=joints, cost=float(relative_weights(task) @ misses**2))
-
-
-def _fewer_targets(task: Task, rng: np.random.Generator) -> Task:
-    """Return the task with a random part of its targets: forty tell where to look as well as more."""
-    if len(task.targets) <= _MOST_TARGETS:
-        return task
-    chosen = np.sort(rng.choice(len(task.targets), _MOST_TARGETS, replace=False))
-    return replace(task, targets=task.table.take(chosen))
+            continue
+        for arm in as_it_is_and_turned(task, start.arm):
+            joints, misses = arm.closest_joints(task.table.positions)
+            yield Start(arm, joints, cost=float(relative_weights(task) @ misses**2))
 
 
 @lru_cache(maxsize=4)

@@ -102,8 +102,10 @@ class Search:
                 return
 
     def _promises_all(self, start: Start) -> bool:
-        """Whether a start may reach every target as it is: it was refined, and steps of the program may lose it."""
-        return start.cost * len(self.part.targets) <= float(self.part.tolerances.min()) ** 2
+        """Whether a start may reach every target as it is, and the program may lose it among obstacles."""
+        if not self.part.obstacles:
+            return False
+        return start.cost <= float(self.part.tolerances.min()) ** 2
 
     def _may_be_better(self, start: Start) -> bool:
         """Whether a start may lead to a better shape than the best: not if its valley is above that."""

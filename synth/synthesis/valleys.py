@@ -81,7 +81,7 @@ class Valleys:
 
     @property
     def promising(self) -> Refined:
-        """The best shapes, moved out of obstacles; where the worst miss counts, with the least they can have."""
+        """The best shapes, moved out of obstacles; for minimax, with the least worst miss they can have."""
         best = self._out_of_obstacles()
         if self.task.objective is Objective.LEAST_SQUARES:
             return best
@@ -90,9 +90,9 @@ class Valleys:
 
     @property
     def within_tolerance(self) -> Refined:
-        """The promising shapes that nearly meet all targets."""
+        """The promising shapes that may meet all targets: they do so in the mean."""
         promising = self.promising
-        near = promising.cost * len(self.task.targets) <= float(self.task.tolerances.min()) ** 2
+        near = promising.cost <= float(self.task.tolerances.min()) ** 2
         return promising.take(np.flatnonzero(near))
 
     def _out_of_obstacles(self) -> Refined:
