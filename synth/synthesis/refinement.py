@@ -243,7 +243,8 @@ class _Descent:
         worst = squared.max(axis=1) + _TINY
         half = 0.5 * self._exponent
         relative = squared / worst[:, None]
-        mean = np.mean(relative**half, axis=1)
+        # Where all targets are met exactly there is no slope, whatever the norm.
+        mean = np.maximum(np.mean(relative**half, axis=1), _TINY)
         slopes = (mean ** (1.0 / half - 1.0))[:, None] * relative ** (half - 1.0) * self._weights
         return worst * mean ** (1.0 / half), slopes
 
