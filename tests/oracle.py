@@ -204,11 +204,17 @@ class OracleArm:
         a = (s35 - self.d45**2 + along**2) / (2.0 * along)
         return self.axis_points[2] + a * self.end[0][:, 0], np.sqrt(max(s35 - a**2, 0.0))
 
+    @cached_property
+    def _turning(self):
+        """The circle's centre, and where P5 is from there at theta2 = 0 and a quarter of a turn."""
+        (u, _, t), (centre, radius) = self.end[0].T, self.circle
+        return centre, -radius * t, -radius * np.cross(u, t)
+
     def at_joint_2(self, theta2):
         """Return P5 [..., 3] at theta1 = 0."""
-        (u, _, t), (centre, radius) = self.end[0].T, self.circle
+        centre, folded, aside = self._turning
         theta2 = np.asarray(theta2, dtype=float)[..., None]
-        return centre - radius * (np.cos(theta2) * t + np.sin(theta2) * np.cross(u, t))
+        return centre + np.cos(theta2) * folded + np.sin(theta2) * aside
 
     def end_effector(self, joints):
         """Return P5 [..., 3] for joint angles [..., 2]."""
@@ -341,11 +347,11 @@ class OracleArm:
 
     # What the end effector can reach.
 
-    def closest(self, targets, samples=1441, valleys=6):
+    def closest(self, targets, samples=1441, valleys=6, halvings=45):
         """Return joint angles [n, 2] within the limits that come nearest to points [n, 3] of the task frame.
 
         For each angle of joint 2 the best of joint 1 turns P5 into the target's half plane, or is the nearer
-        end of its range. The best valleys among samples of joint 2 are searched by golden section.
+        end of its range. The best valleys among samples of joint 2 are narrowed by golden section.
         """
         second = self.robot.joint_limits.second
         points = self.to_base(np.atleast_2d(targets))[:, None]
@@ -356,7 +362,7 @@ class OracleArm:
         starts = grid[np.argsort(np.where(bottom, misses, np.inf), axis=1)[:, :valleys]]
         low = np.maximum(starts - (grid[1] - grid[0]), second.lower)
         high = np.minimum(starts + (grid[1] - grid[0]), second.upper)
-        for _ in range(45):
+        for _ in range(halvings):
             width = _GOLDEN * (high - low)
             left, right = high - width, low + width
             nearer = self._best_turn(points, left)[1] < self._best_turn(points, right)[1]

@@ -2,10 +2,11 @@
 
     python tests/benchmarks/fuzz.py [--tasks 300] [--first 0] [--workers 2] [--limit 300] [--save DIR]
 
-Other robots, free rigid links, joint ranges, places of the base, obstacles, floors, topologies, objectives, 1 to
-30 targets, tolerances of 0.01 to 20 mm. Planted tasks can be done, impossible ones cannot by construction, of
-wild ones nobody knows. Each task is solved in a process of its own, which is ended after --limit seconds; what
-is at fault is printed with its task as YAML. One task again: --first NUMBER --tasks 1.
+Other robots, free rigid links, joint ranges, places of the base, obstacles, floors, topologies, objectives,
+1 to 30 targets, tolerances of 0.01 to 20 mm. Planted tasks can be done, impossible ones cannot by
+construction, of wild ones nobody knows. Each is solved in a process of its own, which is ended when it takes
+far too long; what is at fault is printed with its task as YAML, or put into files by --save. One task again:
+--numbers N.
 """
 
 from __future__ import annotations
@@ -59,7 +60,10 @@ def answered(number: int, seed: int) -> dict:
         outcome["faults"].append(Fault("exception", f"{told[-1]} ({place})"))
         return outcome | {"time": time.perf_counter() - began}
     outcome["status"], outcome["message"] = content["status"], content["message"]
-    outcome["faults"] += [Fault("warning", f"{each.category.__name__}: {each.message}") for each in warned]
+    told = Counter(
+        f"{each.category.__name__}: {each.message} ({Path(each.filename).name})" for each in warned
+    )
+    outcome["faults"] += [Fault("warning", f"{words}, {count} times") for words, count in told.items()]
     outcome["faults"] += judge(fuzz, task, content, text)
     return outcome
 
@@ -102,8 +106,8 @@ def report(outcomes: list[dict], limit: float) -> None:
         times = [outcome["time"] for outcome in mine]
         cells = "  ".join(f"{counts[status]:>17}" for status in STATUSES)
         print(
-            f"{kind:<12} {len(mine):>5}  {cells}  {np.median(times):>5.2f} s {np.percentile(times, 95):>5.1f} s "
-            f"{max(times):>5.1f} s"
+            f"{kind:<12} {len(mine):>5}  {cells}  {np.median(times):>5.2f} s "
+            f"{np.percentile(times, 95):>5.1f} s {max(times):>5.1f} s"
         )
     faults = [(outcome, Fault(*fault)) for outcome in outcomes for fault in outcome["faults"]]
     by_kind = Counter(fault.kind for _, fault in faults)
@@ -150,7 +154,7 @@ def main() -> None:
             )
     report(outcomes, arguments.limit)
     for outcome in outcomes:
-        serious = [fault for fault in outcome["faults"] if Fault(*fault).kind not in {"instructions"}]
+        serious = [fault for fault in outcome["faults"] if Fault(*fault).kind != "instructions"]
         if serious and arguments.save is None:
             print(f"\n# task {outcome['number']}: {Fault(*serious[0]).sentence}\n{outcome['yaml']}")
         elif serious:

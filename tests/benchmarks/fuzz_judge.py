@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -21,6 +22,11 @@ if TYPE_CHECKING:
 _ROUNDED = 0.5000001  # of the last digit that is printed
 _WAY_SLACK = 3e-5  # m: by so much a clearance on a way is known to the package
 _NUMBER = r"(-?\d+\.?\d*)"
+_OUT_OF_REACH = rf"(\w+) is {_NUMBER} mm from wherever .* at most {_NUMBER} mm .* at least {_NUMBER} mm"
+_TARGET_LINE = (
+    rf"(\w+) +(reached|MISSED) +miss +{_NUMBER} of {_NUMBER} mm +"
+    rf"joints +{_NUMBER}, +{_NUMBER} deg(?: +clear by {_NUMBER} mm)?"
+)
 
 
 class Fault(NamedTuple):
@@ -89,16 +95,19 @@ def _impossible(fuzz, task, content, _):
         yield Fault("false proof", f"{content['message']}; but there is {found}")
 
 
-def searched(task: Task, seed: int, shapes: int = 400, polished: int = 6):
-    """Look for a shape that meets a task, by least squares from random shapes; None if there is none found."""
+def searched(task: Task, seed: int, shapes: int = 200, polished: int = 3):
+    """Return a shape that meets a task, by least squares from random shapes, or None if none is found."""
     rng = np.random.default_rng([seed, 5])
     robot, targets = task.robot, task.table.positions
 
-    def cost(arm):
-        return arm.misses(arm.closest(targets, samples=91, valleys=1), targets) / task.tolerances
+    def cost(arm, halvings):
+        return (
+            arm.misses(arm.closest(targets, samples=91, valleys=1, halvings=halvings), targets)
+            / task.tolerances
+        )
 
     arms = [random_arm(task, rng) for _ in range(shapes)]
-    arms.sort(key=lambda arm: float(np.sum(np.minimum(cost(arm), 1e6) ** 2)))
+    arms.sort(key=lambda arm: float(np.sum(np.minimum(cost(arm, 0), 1e6) ** 2)))
     for arm in arms[:polished]:
         count = len(arm.lengths)
 
@@ -116,7 +125,7 @@ def searched(task: Task, seed: int, shapes: int = 400, polished: int = 6):
             return OracleArm(robot, curvatures, lengths, float(d35), float(d45), arm.position, arm.yaw)
 
         start = np.concatenate([arm.curvatures.ravel(), [arm.length, arm.d35, arm.d45]])
-        answer = least_squares(lambda x: cost(bent(x)), start, max_nfev=60)  # noqa: B023 - used at once
+        answer = least_squares(lambda x, bent=bent: cost(bent(x), 12), start, max_nfev=25)
         best = bent(answer.x)
         joints = best.closest(targets)
         if (best.misses(joints, targets) <= task.tolerances).all() and not broken(task, best, joints):
@@ -143,21 +152,28 @@ def _numbers(task, content, arm):
             said = target["clearance"]
             if not clear - 1e-4 <= said <= clear + 2e-6:
                 yield Fault("misstated", f"{name} is clear by {clear}, said {said}")
-        for other in target["alternatives"]:
-            if arm.misses(np.array([other]), targets[[index]])[0] > target["tolerance"] + SLACK:
-                yield Fault("misstated", f"{name}: other joint angles miss it")
-            yield from (
-                Fault("misstated", f"{name}: other joint angles break {breach.limit} by {breach.amount}")
-                for breach in arm.breaches_at(other, task.floor, solids)
-            )
+        yield from _other_joints(task, arm, target, targets[[index]], solids)
         if target["miss"] > target["tolerance"]:
             # What is missed could not be reached in this shape: else the sentence "misses by" is none.
             closest = arm.closest(targets) if closest is None else closest
             nearer = arm.misses(closest[[index]], targets[[index]])[0]
             if nearer < misses[index] - 1e-5 and not arm.breaches_at(closest[index], task.floor, solids):
-                yield Fault(
-                    "not the closest", f"{name}: {nearer} is possible in this shape, said {misses[index]}"
-                )
+                yield Fault("not the closest", f"{name}: {nearer} is possible, said {misses[index]}")
+    yield from _link(content, arm, size)
+
+
+def _other_joints(task, arm, target, position, solids):
+    """Check the other joint angles that are said to reach a target."""
+    name = target["name"]
+    for other in target["alternatives"]:
+        if arm.misses(np.array([other]), position)[0] > target["tolerance"] + SLACK:
+            yield Fault("misstated", f"{name}: other joint angles miss it")
+        for breach in arm.breaches_at(other, task.floor, solids):
+            yield Fault("misstated", f"{name}: other joint angles break {breach.limit} by {breach.amount}")
+
+
+def _link(content, arm, size):
+    """Check the numbers of the link and the distances of the points."""
     link = content["link"]
     for key, value in (("length", arm.length), ("total_bend", arm.total_bend)):
         if abs(link[key] - value) > SLACK:
@@ -170,11 +186,11 @@ def _numbers(task, content, arm):
 
 
 def _ways(task, content, arm):
-    """Check that ways from target to target keep the joint limits and clear of everything, at many postures."""
-    solids, limits = [obstacle.solid for obstacle in task.obstacles], task.robot.joint_limits
+    """Check that ways from target to target keep within limits and clear of everything, at many postures."""
+    solids = [obstacle.solid for obstacle in task.obstacles]
     for motion in content["motions"] or []:
         joints = np.array(motion["joints"])
-        for start, end in zip(joints[:-1], joints[1:], strict=True):
+        for start, end in pairwise(joints):
             for share in np.linspace(0.0, 1.0, 7):
                 posture = start + share * (end - start)
                 broken_here = [
@@ -187,7 +203,6 @@ def _ways(task, content, arm):
                     name = f"{motion['start']} to {motion['end']}"
                     yield Fault("way not clear", f"{name}: {limit} by {1e3 * amount:.4f} mm at {posture}")
                     break
-    del limits
 
 
 def _sentences(fuzz, task, content, arm, text):
@@ -210,46 +225,57 @@ def _sentences(fuzz, task, content, arm, text):
     yield from _reasons(fuzz, task, content, indices)
     if arm is None:
         return
-    yield from _summary(task, content, arm, text, names)
+    yield from _summary(content, arm, text, names)
 
 
 def _reasons(fuzz, task, content, indices):
-    """Check the proofs' numbers: each must be attained by nothing, so rounded to the safe side."""
+    """Check the proofs' numbers: bounds must be attained by nothing, so rounded to the safe side."""
     positions = task.base.to_base(task.table.positions)
     solids = {obstacle.name: obstacle.solid for obstacle in task.obstacles}
     p2 = task.base.to_task(np.array([0.0, 0.0, task.robot.d12]))
+
+    def sunk(name, number):
+        return number, task.floor - positions[indices[name], 2]
+
+    def in_solid(name, solid, number):
+        target = task.table.positions[indices[name]]
+        rod = 0.5 * task.robot.rigid_link.diameter
+        return number, rod - float(distance_from_solid(solids[solid], target))
+
+    depths = {
+        rf"(\w+) is {_NUMBER} mm below the floor": sunk,
+        rf"(\w+) is in (.*): the end effector would be {_NUMBER} mm inside": in_solid,
+        rf"the link starts at P2, {_NUMBER} mm below the floor": lambda number: (
+            number,
+            task.floor - task.robot.d12,
+        ),
+        rf"the link starts at P2, {_NUMBER} mm inside (.*)": lambda number, solid: (
+            number,
+            -float(distance_from_solid(solids[solid], p2)),
+        ),
+    }
     for reason in content["reasons"]:
         if "by algebra" in reason and fuzz.kind == "planted":
             yield Fault("untrue", f"planted, but: {reason}")
-        if found := re.match(
-            rf"(\w+) is {_NUMBER} mm from wherever .* at most {_NUMBER} mm .* at least {_NUMBER} mm", reason
-        ):
-            name, away, reach, least = found.group(1), *(float(number) for number in found.groups()[1:])
-            rod, nearest = 1e3 * longest_rod(task.robot), 1e3 * nearest_end(task, positions[indices[name]])
-            if least > nearest - rod + 1e-6:
-                yield Fault("untrue", f"{reason}; but {nearest - rod:.6f} mm is possible")
-            if reach < rod - 1e-6:
-                yield Fault("untrue", f"{reason}; but the rigid link reaches {rod:.6f} mm")
-            if away > nearest + 1e-6:
-                yield Fault("untrue", f"{reason}; but it can be {nearest:.6f} mm")
-        elif found := re.match(rf"(\w+) is {_NUMBER} mm below the floor", reason):
-            depth = 1e3 * (task.floor - positions[indices[found.group(1)], 2])
-            if abs(depth - float(found.group(2))) > 0.1 * _ROUNDED + 0.05:
-                yield Fault("untrue", f"{reason}; it is {depth:.4f} mm")
-        elif found := re.match(rf"the link starts at P2, {_NUMBER} mm inside (.*)", reason):
-            depth = -1e3 * float(distance_from_solid(solids[found.group(2)], p2))
-            if abs(depth - float(found.group(1))) > 0.1 * _ROUNDED + 0.05:
-                yield Fault("untrue", f"{reason}; it is {depth:.4f} mm")
-        elif found := re.match(rf"the link starts at P2, {_NUMBER} mm below the floor", reason):
-            depth = 1e3 * (task.floor - task.robot.d12)
-            if abs(depth - float(found.group(1))) > 0.1 * _ROUNDED + 0.05:
-                yield Fault("untrue", f"{reason}; it is {depth:.4f} mm")
-        elif found := re.match(rf"(\w+) is in (.*): the end effector would be {_NUMBER} mm inside", reason):
-            target = task.table.positions[indices[found.group(1)]]
-            depth = -1e3 * float(distance_from_solid(solids[found.group(2)], target))
-            depth += 500.0 * task.robot.rigid_link.diameter
-            if abs(depth - float(found.group(3))) > 0.1 * _ROUNDED + 0.05:
-                yield Fault("untrue", f"{reason}; it is {depth:.4f} mm")
+        if found := re.match(_OUT_OF_REACH, reason):
+            yield from _reach(task, reason, positions[indices[found.group(1)]], found.groups()[1:])
+        for pattern, depth_of in depths.items():
+            if found := re.match(pattern, reason):
+                said, depth = depth_of(*found.groups())
+                if abs(1e3 * depth - float(said)) > 0.1 * _ROUNDED + 0.05:
+                    yield Fault("untrue", f"{reason}; it is {1e3 * depth:.4f} mm")
+
+
+def _reach(task, reason, point, numbers):
+    """Check a target out of reach: how far it is from the link's end, the rigid link, the least miss."""
+    away, reach, least = map(float, numbers)
+    rod, nearest = 1e3 * longest_rod(task.robot), 1e3 * nearest_end(task, point)
+    if least > nearest - rod + 1e-6:
+        yield Fault("untrue", f"{reason}; but {nearest - rod:.6f} mm is possible")
+    if reach < rod - 1e-6:
+        yield Fault("untrue", f"{reason}; but the rigid link reaches {rod:.6f} mm")
+    if away > nearest + 1e-6:
+        yield Fault("untrue", f"{reason}; but it can be {nearest:.6f} mm")
 
 
 def nearest_end(task: Task, point) -> float:
@@ -272,56 +298,48 @@ def nearest_end(task: Task, point) -> float:
             ).end[1]
 
         x = np.concatenate([0.3 * start.curvatures.ravel(), [start.length]])
-        answer = least_squares(lambda x: end(x) - point, x, max_nfev=100)  # noqa: B023 - used at once
+        answer = least_squares(lambda x, end=end: end(x) - point, x, max_nfev=100)
         best = min(best, float(np.linalg.norm(answer.fun)))
     return best
 
 
-def _summary(task, content, arm, text, names):
-    """Check the lines of the summary: targets, category, link."""
+def _summary(content, arm, text, names):
+    """Check the lines of the summary: category, link, targets."""
     off = arm.off_topology
-    for words, true in (("PUMA-like", 1e3 * off["puma"]), ("spherical", 1e3 * off["spherical"])):
-        for number in re.findall(rf"{words} within {_NUMBER} mm", text)[:1]:
-            if abs(float(number) - true) > 0.1 * _ROUNDED + 1e-3:
-                yield Fault("untrue", f"{words} within {number} mm; it is {true:.4f}")
-    for number in re.findall(rf"SCARA within {_NUMBER} deg", text)[:1]:
-        if abs(float(number) - np.degrees(off["scara"])) > 0.1 * _ROUNDED + 1e-3:
-            yield Fault("untrue", f"SCARA within {number} deg; it is {np.degrees(off['scara']):.4f}")
-    said = re.search(
-        rf"link {_NUMBER} mm long, (?:straight|smallest bend radius {_NUMBER} mm), {_NUMBER} deg", text
-    )
-    if said:
-        length, radius, bend = said.groups()
-        for number, true in (
-            (length, 1e3 * arm.length),
-            (radius, 1e3 / max(arm.bends.max(), 1e-9)),
-            (bend, np.degrees(arm.total_bend)),
-        ):
-            if number is not None and abs(float(number) - true) > 0.1 * _ROUNDED + 1e-4 * abs(true):
-                yield Fault("untrue", f"{said.group(0)}; {number} is {true:.4f}")
-    line = rf"(\w+) +(reached|MISSED) +miss +{_NUMBER} of {_NUMBER} mm +joints +{_NUMBER}, +{_NUMBER} deg(?: +clear by {_NUMBER} mm)?"
-    for name, verdict, miss, tolerance, theta1, theta2, clear in re.findall(line, text):
-        if name not in names:
-            yield Fault("untrue", f"there is no target {name}")
-            continue
-        target = names[name]
-        if (verdict == "reached") != target["within_tolerance"]:
-            yield Fault(
-                "untrue", f"{name} is {verdict}, but within tolerance is {target['within_tolerance']}"
-            )
-        if verdict == "reached" and float(miss) > float(tolerance):
-            yield Fault("untrue", f"{name} is reached, with a miss of {miss} of {tolerance} mm")
-        if verdict == "MISSED" and float(miss) <= float(tolerance):
-            yield Fault("puzzling", f"{name} is MISSED, with a miss of {miss} of {tolerance} mm")
-        for said, true, digit in (
-            (miss, 1e3 * target["miss"], 1e-3),
-            (tolerance, 1e3 * target["tolerance"], 1e-3),
-            (theta1, np.degrees(target["joints"][0]), 1e-2),
-            (theta2, np.degrees(target["joints"][1]), 1e-2),
-        ):
-            if abs(float(said) - true) > digit * _ROUNDED + 1e-9 * abs(true):
-                yield Fault("untrue", f"{name}: {said} is {true:.6f}")
-        if clear and abs(float(clear) - 1e3 * min(target["clearance"], 0.1)) > 0.1 * _ROUNDED + 0.05:
-            yield Fault("untrue", f"{name}: clear by {clear}, it is {1e3 * target['clearance']:.4f}")
+    numbers = {
+        rf"PUMA-like within {_NUMBER} mm": 1e3 * off["puma"],
+        rf"spherical within {_NUMBER} mm": 1e3 * off["spherical"],
+        rf"SCARA within {_NUMBER} deg": np.degrees(off["scara"]),
+        rf"link {_NUMBER} mm long": 1e3 * arm.length,
+        rf"smallest bend radius {_NUMBER} mm": 1e3 / max(arm.bends.max(), 1e-9),
+        rf"{_NUMBER} deg of bend in all": np.degrees(arm.total_bend),
+    }
+    for pattern, true in numbers.items():
+        for said in re.findall(pattern, text)[:1]:
+            if abs(float(said) - true) > 0.1 * _ROUNDED + 1e-4 + 1e-6 * abs(true):
+                yield Fault("untrue", f"{pattern.replace(_NUMBER, said)}; it is {true:.4f}")
+    for line in re.findall(_TARGET_LINE, text):
+        if line[0] not in names:
+            yield Fault("untrue", f"there is no target {line[0]}")
+        else:
+            yield from _target_line(names[line[0]], *line)
     if content["status"] == "found" and "MISSED" in text:
         yield Fault("untrue", "found, but a target is MISSED")
+
+
+def _target_line(target, name, verdict, miss, tolerance, theta1, theta2, clear):
+    """Check what the summary says of a target."""
+    if (verdict == "reached") != target["within_tolerance"]:
+        yield Fault("untrue", f"{name} is {verdict}, but within tolerance: {target['within_tolerance']}")
+    if (verdict == "reached") != (float(miss) <= float(tolerance)):
+        yield Fault("puzzling", f"{name} is {verdict}, with a miss of {miss} of {tolerance} mm")
+    for said, true, digit in (
+        (miss, 1e3 * target["miss"], 1e-3),
+        (tolerance, 1e3 * target["tolerance"], 1e-3),
+        (theta1, np.degrees(target["joints"][0]), 1e-2),
+        (theta2, np.degrees(target["joints"][1]), 1e-2),
+    ):
+        if abs(float(said) - true) > digit * _ROUNDED + 1e-9 * abs(true):
+            yield Fault("untrue", f"{name}: {said} is {true:.6f}")
+    if clear and abs(float(clear) - 1e3 * min(target["clearance"], 0.1)) > 0.1 * _ROUNDED + 0.05:
+        yield Fault("untrue", f"{name}: clear by {clear} mm, it is {1e3 * target['clearance']:.4f}")

@@ -1,7 +1,7 @@
 """Random tasks over the whole input space, as task files: other robots, places, obstacles, questions.
 
-A task is planted (a legal shape of unequal arcs, its targets by the oracle's kinematics at legal joint angles,
-clear of everything: so it can be done), impossible by construction, or wild (nobody knows).
+A task is planted (a legal shape of unequal arcs, its targets by the oracle's kinematics at legal joint
+angles, clear of everything: so it can be done), impossible by construction, or wild (nobody knows).
 """
 
 from __future__ import annotations
@@ -201,7 +201,7 @@ def planted_arm(task: Task, rng) -> OracleArm | None:
 
 
 def legal_joints(task: Task, arm: OracleArm, count, rng):
-    """Return joint angles [count, 2] at which the arm is legal, off the very ends of their ranges, or None."""
+    """Return joint angles [count, 2] at which the arm is legal, off the ends of their ranges, or None."""
     limits = task.robot.joint_limits
     kept = []
     for _ in range(20 * count):
