@@ -2,7 +2,7 @@
 
     python tests/benchmarks/scans.py [--seeds 10] [--vary search | scan | both] [--counts N ...]
 
-Points of a planted arm's workspace, 1 mm of noise, 6 mm of tolerance: a shape that is within it exists. The seed
+Points of a planted arm's workspace, 1 mm of noise, 6 mm of tolerance: a shape within it exists. The seed
 is that of the search for one and the same scan, that of the scan, or both. Times are of this machine.
 """
 
