@@ -14,6 +14,7 @@ from __future__ import annotations
 import argparse
 import io
 import json
+import math
 import multiprocessing
 import sys
 import time
@@ -45,20 +46,22 @@ def answered(number: int, seed: int) -> dict:
     fuzz = fuzz_task(number)
     outcome = {"number": number, "kind": fuzz.kind, "why": fuzz.why, "tags": fuzz.tags, "faults": []}
     outcome |= {"targets": len(fuzz.content["targets"]), "yaml": as_yaml(fuzz), "status": "exception"}
-    began = time.perf_counter()
+    began, spent = time.perf_counter(), time.process_time()
     try:
         with warnings.catch_warnings(record=True) as warned:
             warnings.simplefilter("always")
             task = parse_task(fuzz.content)
             solution = solve(task, seed=seed)
             outcome["time"] = time.perf_counter() - began
+            outcome["processor"] = time.process_time() - spent
             content, text = solution_to_json(solution), solution_text(solution)
         json.dumps(content, allow_nan=False)
     except Exception:  # noqa: BLE001 - whatever is raised is what is looked for
         told = traceback.format_exc().strip().splitlines()
         place = next((line.strip() for line in reversed(told) if "/synth/" in line), "")
         outcome["faults"].append(Fault("exception", f"{told[-1]} ({place})"))
-        return outcome | {"time": time.perf_counter() - began}
+        took = {"time": time.perf_counter() - began, "processor": time.process_time() - spent}
+        return outcome | took
     outcome["status"], outcome["message"] = content["status"], content["message"]
     told = Counter(
         f"{each.category.__name__}: {each.message} ({Path(each.filename).name})" for each in warned
@@ -84,7 +87,8 @@ def outcome_of(number: int, seed: int, limit: float) -> dict:
     process = multiprocessing.get_context("fork").Process(target=_send, args=(its, number, seed), daemon=True)
     process.start()
     its.close()
-    lost = {"number": number, "kind": "?", "why": "", "tags": [], "targets": 0, "yaml": "", "time": limit}
+    lost = {"number": number, "kind": "?", "why": "", "tags": [], "targets": 0, "yaml": ""}
+    lost |= {"time": limit, "processor": math.nan}
     try:
         if mine.poll(limit + _DRAWING):
             return mine.recv()
@@ -99,11 +103,15 @@ def outcome_of(number: int, seed: int, limit: float) -> dict:
 
 
 def report(outcomes: list[dict], limit: float) -> None:
-    print("\nkind         tasks  " + "  ".join(f"{s:>17}" for s in STATUSES) + "   median    95 %    most")
+    print(
+        "\nkind         tasks  "
+        + "  ".join(f"{s:>17}" for s in STATUSES)
+        + "   processor time: median, 95 %, most"
+    )
     for kind in sorted({outcome["kind"] for outcome in outcomes}):
         mine = [outcome for outcome in outcomes if outcome["kind"] == kind]
         counts = Counter(outcome["status"] for outcome in mine)
-        times = [outcome["time"] for outcome in mine]
+        times = [outcome["processor"] for outcome in mine if not math.isnan(outcome["processor"])]
         cells = "  ".join(f"{counts[status]:>17}" for status in STATUSES)
         print(
             f"{kind:<12} {len(mine):>5}  {cells}  {np.median(times):>5.2f} s "
@@ -115,7 +123,7 @@ def report(outcomes: list[dict], limit: float) -> None:
     planted = [outcome for outcome in outcomes if outcome["kind"] == "planted"]
     found = sum(outcome["status"] == "found" for outcome in planted)
     slow = sum(outcome["time"] > limit for outcome in outcomes)
-    print(f"\nplanted: {found} of {len(planted)} found; {slow} tasks over {limit:.0f} s")
+    print(f"\nplanted: {found} of {len(planted)} found; {slow} tasks took over {limit:.0f} s")
     print(
         "faults: "
         + (", ".join(f"{n} {kind} in {tasks[kind]} tasks" for kind, n in by_kind.most_common()) or "none")
@@ -146,12 +154,13 @@ def main() -> None:
         answer = partial(outcome_of, seed=arguments.seed, limit=arguments.limit)
         for done, outcome in enumerate(executor.map(answer, numbers), start=1):
             outcomes.append(outcome)
-            kinds = Counter(Fault(*fault).kind for fault in outcome["faults"])
             print(
                 f"{done:>4} task {outcome['number']:>4} {outcome['kind']:<10} {outcome['status']:<17} "
-                f"{outcome['time']:>6.1f} s  {', '.join(f'{n} {kind}' for kind, n in kinds.items())}",
+                f"{outcome['time']:>6.1f} s, processor {outcome['processor']:.1f} s",
                 flush=True,
             )
+            for kind, sentence in outcome["faults"]:
+                print(f"       {kind}: {sentence}", flush=True)
     report(outcomes, arguments.limit)
     for outcome in outcomes:
         serious = [fault for fault in outcome["faults"] if Fault(*fault).kind != "instructions"]
