@@ -5,7 +5,8 @@
 OpenBLAS rounds differently with each kernel; which one it takes is fixed when Python starts, so each kernel
 and number of threads is a process of its own. Those the processor cannot run are left out: that is tried.
 For each problem: in how many runs its facts hold, how far the objective (the task's own) spreads, and which
-runs are above the best one by more than 1e-6 of it.
+runs are above the best one by more than 1e-6 of it. Shapes that meet the task are not compared by what they
+miss but by how gently they bend: the spread of the bending energy is told.
 """
 
 from __future__ import annotations
@@ -61,6 +62,7 @@ def solved(names: list[str], seeds: range) -> None:
             run |= {"time": solution.time.total, "broken": broken_facts(facts, task, solution)}
             if solution.designs:
                 run["objective"] = objective(task, solution.best.verification.misses)
+                run["bend"] = solution.robot.shape.bending_energy
             print(json.dumps(run), flush=True)
 
 
@@ -98,8 +100,10 @@ def summary(name: str, found: list[dict]) -> dict:
         and run["objective"] is not None
         and run["objective"] > best * (1.0 + SAME) + _EXACT
     ]
+    bends = [run["bend"] for run in found if run["status"] == "found"]
     return {
         "problem": name,
+        "bend_spread": max(bends) / min(bends) - 1.0 if bends else None,
         "runs": len(found),
         "hold": sum(not run["broken"] for run in found),
         "statuses": Counter(run["status"] for run in found),
@@ -163,6 +167,11 @@ def main() -> None:
         print(
             f"{each['problem']:<20} facts hold {each['hold']} of {each['runs']}; {statuses}; {numbers}, "
             f"spread {each['spread']:.1e}; {len(each['apart'])} apart; at most {each['time']:.1f} s"
+            + (
+                ""
+                if each["bend_spread"] is None
+                else f"; bend of those found spreads {each['bend_spread']:.1e}"
+            )
         )
         for run in each["apart"]:
             print(
