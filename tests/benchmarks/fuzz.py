@@ -21,7 +21,7 @@ import time
 import traceback
 import warnings
 from collections import Counter
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import partial
 from pathlib import Path
 
@@ -152,7 +152,9 @@ def main() -> None:
     outcomes = []
     with ThreadPoolExecutor(arguments.workers) as executor:
         answer = partial(outcome_of, seed=arguments.seed, limit=arguments.limit)
-        for done, outcome in enumerate(executor.map(answer, numbers), start=1):
+        jobs = [executor.submit(answer, number) for number in numbers]
+        for done, job in enumerate(as_completed(jobs), start=1):
+            outcome = job.result()
             outcomes.append(outcome)
             print(
                 f"{done:>4} task {outcome['number']:>4} {outcome['kind']:<10} {outcome['status']:<17} "
@@ -161,6 +163,7 @@ def main() -> None:
             )
             for kind, sentence in outcome["faults"]:
                 print(f"       {kind}: {sentence}", flush=True)
+    outcomes.sort(key=lambda outcome: outcome["number"])
     report(outcomes, arguments.limit)
     for outcome in outcomes:
         serious = [fault for fault in outcome["faults"] if Fault(*fault).kind != "instructions"]
