@@ -11,8 +11,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import least_squares
 
-from synth.robot import PRESETS, Arm, ArmBody, LinkShape
-from synth.task import PointTarget, Task, Topology
+from synth.robot import PRESETS, Arm, ArmBody, LinkShape, Robot
+from synth.task import PointTarget, TargetTable, Task, Topology
 
 ROBOT = PRESETS["malleable-2dof"]
 
@@ -75,6 +75,34 @@ def planted_task(seed: int, count: int | None = None, topology: Topology = Topol
             break
     targets = tuple(PointTarget(f"target {i + 1}", point, 0.5e-3) for i, point in enumerate(points))
     return Task(f"planted {seed}", ROBOT, targets), arm
+
+
+def noisy(seed: int, count: int = 8, robot: Robot = ROBOT, noise: float = 0.02, **changes: object) -> Task:
+    """Return a planted task whose targets are off by a normal error of each coordinate, m; no floor."""
+    task, _ = planted_task(seed, count)
+    shifts = np.random.default_rng(seed).normal(scale=noise, size=(count, 3))
+    targets = [PointTarget(t.name, t.position + n, 0.5e-3) for t, n in zip(task.targets, shifts, strict=True)]
+    return Task("noisy", robot, tuple(targets), floor=None, **changes)
+
+
+def scanned(
+    count: int, noise: float = 1e-3, seed: int = 3, tolerance: float = 5e-3, **changes: object
+) -> tuple[Task, Arm]:
+    """Return points at random joint angles of a planted arm, off its surface by noise, m; and the arm."""
+    task, arm = planted_task(seed, 4)
+    rng, limits = np.random.default_rng(seed), task.robot.joint_limits
+    theta1 = rng.uniform(limits.base.lower + 0.05, limits.base.upper - 0.05, 2 * count)
+    theta2 = rng.uniform(limits.second.lower + 0.05, limits.second.upper - 0.05, 2 * count)
+    theta2 = theta2[ArmBody(arm).rod_from_tube(theta2) > 0.0]
+    points = arm.forward_kinematics(theta1[: len(theta2)], theta2)[:count]
+    points += rng.normal(0.0, noise, points.shape)
+    table = TargetTable(
+        [f"point {i}" for i in range(len(points))],
+        points,
+        np.full(len(points), tolerance),
+        np.ones(len(points)),
+    )
+    return replace(task, targets=table, floor=None, **changes), arm
 
 
 def nearly_special_task(seed: int, tolerance: float) -> Task:

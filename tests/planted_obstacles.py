@@ -1,7 +1,6 @@
 """Planted tasks with something in the way that the planted arm just keeps clear of.
 
-Clearances are found here by brute force, at points half a millimetre apart, through nothing of the
-package but the forward kinematics of the link.
+Clearances are those of the oracle, by samples half a millimetre apart.
 """
 
 from __future__ import annotations
@@ -10,55 +9,25 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from oracle import OracleArm, turned
 from planted import ROBOT, planted_arm
 
-from synth.geometry import Box, Capsule
+from synth.geometry import Box
 from synth.task import Obstacle, PointTarget, Task
 
 if TYPE_CHECKING:
     from synth.robot import Arm
 
-SPACING = 0.5e-3
 LEAST, MOST = 2e-3, 60e-3  # clearance of the planted arm, m
 
 
-def brute_distance(solid: Box | Capsule, points: np.ndarray) -> np.ndarray:
-    """Return the signed distance of points, (..., 3), from a solid; by the textbook."""
-    if isinstance(solid, Capsule):
-        start, end = solid.ends
-        along = end - start
-        t = np.clip((points - start) @ along / max(along @ along, 1e-30), 0, 1)
-        return np.linalg.norm(points - (start + t[..., None] * along), axis=-1) - solid.radius
-    c, s = np.cos(solid.yaw), np.sin(solid.yaw)
-    local = (points - solid.centre) @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
-    beyond = np.abs(local) - solid.size / 2
-    outside = np.sqrt(np.sum(np.clip(beyond, 0, None) ** 2, axis=-1))
-    return np.where(outside > 0, outside, beyond.max(axis=-1))
-
-
-def brute_curves(arm: Arm, theta1: float, theta2: float) -> tuple[np.ndarray, np.ndarray]:
+def brute_curves(arm: Arm, joints: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return points of the malleable link beyond its mount, and of the rigid one, in the task frame."""
-    s = np.arange(0.5 * arm.robot.link.diameter, arm.shape.length, SPACING)
-    link = arm.shape.point_at(np.append(s, arm.shape.length)) + [0, 0, arm.robot.d12]
-    c, s = np.cos(theta1), np.sin(theta1)
-    link = arm.base.to_task(link @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]))
-    tip = arm.forward_kinematics(theta1, theta2)
+    oracle = OracleArm.of(arm)
+    link = oracle.centreline(oracle.samples(oracle.tube_radius))
+    link = oracle.to_task(turned(link, joints[0]))
     share = np.linspace(0, 1, 1000)[:, None]
-    return link, link[-1] + share * (tip - link[-1])
-
-
-def brute_clearance(arm: Arm, joints: np.ndarray, solids: list) -> float:
-    """Return the least distance between an arm at all its joint angles and solids of the task frame."""
-    least = np.inf
-    for theta1, theta2 in joints:
-        link, rod = brute_curves(arm, theta1, theta2)
-        for solid in solids:
-            least = min(
-                least,
-                brute_distance(solid, link).min() - 0.5 * arm.robot.link.diameter,
-                brute_distance(solid, rod).min() - 0.5 * arm.robot.rigid_link.diameter,
-            )
-    return float(least)
+    return link, link[-1] + share * (oracle.reached(joints) - link[-1])
 
 
 def turn(yaw: float) -> np.ndarray:
@@ -71,8 +40,8 @@ def wall_with_window(rng: np.random.Generator, arm: Arm, joints: np.ndarray, _po
     yaw = rng.uniform(0, 2 * np.pi)
     distance, thickness = rng.uniform(0.12, 0.45), 0.02
     crossing = []
-    for theta1, theta2 in joints:
-        for points, radius in zip(brute_curves(arm, theta1, theta2), (0.025, 0.0), strict=True):
+    for each in joints:
+        for points, radius in zip(brute_curves(arm, each), (0.025, 0.0), strict=True):
             local = points @ turn(yaw)
             near = local[np.abs(local[:, 0] - distance) < thickness / 2 + radius + LEAST]
             crossing += [near[:, 1:] - radius, near[:, 1:] + radius]
@@ -154,7 +123,7 @@ def planted_with_obstacles(scene: str, seed: int) -> tuple[Task, Arm, np.ndarray
             continue
         for _ in range(20):
             solids = SCENES[scene](rng, arm, joints, points)
-            if solids and LEAST <= brute_clearance(arm, joints, list(solids.values())) <= MOST:
+            if solids and LEAST <= OracleArm.of(arm).clearance(joints, list(solids.values())) <= MOST:
                 targets = tuple(PointTarget(f"target {i + 1}", p, 0.5e-3) for i, p in enumerate(points))
                 obstacles = tuple(Obstacle(name, solid) for name, solid in solids.items())
                 return Task(f"{scene} {seed}", ROBOT, targets, obstacles=obstacles), arm, joints

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from planted_obstacles import brute_distance
+from oracle import distance_from_solid
 
 from synth.geometry import Box, Capsule
 
@@ -19,7 +19,7 @@ def solid(request):
 
 
 def test_distance_is_the_textbook_one(solid):
-    assert solid.distance(POINTS) == pytest.approx(brute_distance(solid, POINTS), abs=1e-12)
+    assert solid.distance(POINTS) == pytest.approx(distance_from_solid(solid, POINTS), abs=1e-12)
 
 
 def test_outward_is_the_gradient_of_the_distance(solid):

@@ -4,30 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from planted import planted_task
+from planted import planted_task, scanned
 
-from synth.robot import ArmBody
 from synth.synthesis import solve, verify
 from synth.synthesis.many_targets import part_of
 from synth.task import Objective, PointTarget, TargetTable, Task
-
-
-def scanned(count, noise=1e-3, seed=3, tolerance=5e-3, **changes):
-    """A task of points at random joint angles of a planted arm, off its surface by noise, m."""
-    task, arm = planted_task(seed, 4)
-    rng, limits = np.random.default_rng(seed), task.robot.joint_limits
-    theta1 = rng.uniform(limits.base.lower + 0.05, limits.base.upper - 0.05, 2 * count)
-    theta2 = rng.uniform(limits.second.lower + 0.05, limits.second.upper - 0.05, 2 * count)
-    theta2 = theta2[ArmBody(arm).rod_from_tube(theta2) > 0.0]
-    points = arm.forward_kinematics(theta1[: len(theta2)], theta2)[:count]
-    points += rng.normal(0.0, noise, points.shape)
-    table = TargetTable(
-        [f"point {i}" for i in range(len(points))],
-        points,
-        np.full(len(points), tolerance),
-        np.ones(len(points)),
-    )
-    return replace(task, targets=table, floor=None, **changes), arm
 
 
 @pytest.fixture(scope="module")

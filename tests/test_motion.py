@@ -3,8 +3,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from oracle import OracleArm
 from planted import ROBOT, planted_task
-from planted_obstacles import SCENES, brute_clearance, planted_with_obstacles
+from planted_obstacles import SCENES, planted_with_obstacles
 
 from synth.geometry import Box
 from synth.synthesis import motions, verify
@@ -33,7 +34,7 @@ def test_ways_keep_clear_and_within_the_limits(scene, seed):
                 np.linalg.norm(ends - [target.position, following.position], axis=1).max() < target.tolerance
             )
             solids = [obstacle.solid for obstacle in task.obstacles]
-            assert brute_clearance(arm, along(way.joints), solids) >= -2e-6
+            assert OracleArm.of(arm).clearance(along(way.joints), solids) >= -2e-6
 
 
 def test_each_way_begins_where_the_last_one_ended():
@@ -69,7 +70,7 @@ def test_a_wall_right_round_a_target_leaves_no_way():
     assert check.found
     (way,) = motions(task, Design(arm, check))
     if way.found:  # then round the back, or folded up to pass before it
-        assert brute_clearance(arm, along(way.joints), [plate]) >= -2e-6
+        assert OracleArm.of(arm).clearance(along(way.joints), [plate]) >= -2e-6
         assert len(way.joints) > 2
     else:
         assert way.describe() == "target 1 to target 2: no way was found that keeps clear"

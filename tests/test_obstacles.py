@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from oracle import OracleArm
 from planted import ROBOT, planted_task
-from planted_obstacles import SCENES, brute_clearance, planted_with_obstacles
+from planted_obstacles import SCENES, planted_with_obstacles
 
 from synth.geometry import Box, Capsule
 from synth.robot import Arm, BasePose
@@ -23,7 +24,7 @@ def test_planted_arms_are_found_and_keep_clear(scene, seed):
     assert solution.found
     found = np.array([target.joints for target in solution.targets])
     solids = [obstacle.solid for obstacle in task.obstacles]
-    assert brute_clearance(solution.robot, found, solids) >= -1e-6
+    assert OracleArm.of(solution.robot).clearance(found, solids) >= -1e-6
 
 
 def test_an_obstacle_on_the_planted_arm_is_seen_and_gone_around():
@@ -42,7 +43,7 @@ def test_an_obstacle_on_the_planted_arm_is_seen_and_gone_around():
     solution = solve(task)
     assert solution.found
     found = np.array([target.joints for target in solution.targets])
-    assert brute_clearance(solution.robot, found, [task.obstacles[0].solid]) >= -1e-6
+    assert OracleArm.of(solution.robot).clearance(found, [task.obstacles[0].solid]) >= -1e-6
 
 
 def test_a_target_in_an_obstacle_is_impossible():

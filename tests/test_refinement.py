@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from planted import ROBOT, planted_task
+from planted import ROBOT, noisy, planted_task
 
 from synth.robot import BasePose, Interval, JointLimits, RigidLink
 from synth.synthesis.category_offsets import category_offsets, category_slopes
@@ -12,19 +12,12 @@ from synth.synthesis.population import Population, free_directions, in_equal_arc
 from synth.synthesis.postures import Aims, Postures
 from synth.synthesis.refinement import refine, relative_weights
 from synth.synthesis.residuals import Residuals
-from synth.task import Objective, PointTarget, Task, Topology
+from synth.task import Objective, Topology
 
 FREE = replace(
     ROBOT, name="rigid link to choose", rigid_link=RigidLink(Interval(0.40, 0.5), Interval(0.42, 0.48))
 )
 STEP = 1e-6
-
-
-def noisy(seed, count=8, robot=ROBOT, noise=0.02, **changes):
-    task, _ = planted_task(seed, count)
-    shifts = np.random.default_rng(seed).normal(scale=noise, size=(count, 3))
-    targets = [PointTarget(t.name, t.position + n, 0.5e-3) for t, n in zip(task.targets, shifts, strict=True)]
-    return Task("noisy", robot, tuple(targets), floor=None, **changes)
 
 
 def nudged(population, unknown):

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
+from oracle import SPACING, OracleArm
 from planted import ROBOT, planted_arm
-from planted_obstacles import SPACING, brute_clearance
 
 from synth.geometry import Box, Capsule
 from synth.robot import Arm, ArmBody, LinkShape
@@ -33,7 +33,7 @@ def test_clearance_is_the_least_along_the_curve(seed):
     assert bounds.shape == (3, 3, 2)
     for pair, joint in zip(bounds, joints, strict=True):
         for bound, solid in zip(pair, solids, strict=True):
-            brute = brute_clearance(arm, joint[None], [solid])
+            brute = OracleArm.of(arm).clearance(joint[None], [solid])
             assert min(bound) <= brute
             assert min(bound) >= min(brute - 0.5 * SPACING, 0.1) - CLOSE
 

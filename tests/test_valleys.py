@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from planted import ROBOT, planted_task
-from test_refinement import noisy
+from planted import ROBOT, noisy, planted_task
 
 from synth.synthesis.population import Population
 from synth.synthesis.refinement import Refined

@@ -21,8 +21,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from exact_targets import RADIUS, errors, half_ball, random_values, targets_of, through
 from planted import planted_arm
-from test_geometry_exact import RADIUS, errors, half_ball, random_values, targets_of, through
 
 GOAL = 1e-9
 FALSE = 1e-6  # m

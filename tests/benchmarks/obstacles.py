@@ -17,7 +17,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from planted_obstacles import SCENES, brute_clearance, planted_with_obstacles, without_obstacles
+from oracle import OracleArm
+from planted_obstacles import SCENES, planted_with_obstacles, without_obstacles
 
 from synth.synthesis import solve
 
@@ -30,7 +31,7 @@ def outcome(number: int) -> tuple[str, str, float, float, float]:
     clearance = np.inf
     if solution.designs:
         joints = np.array([target.joints for target in solution.targets])
-        clearance = brute_clearance(solution.robot, joints, [each.solid for each in task.obstacles])
+        clearance = OracleArm.of(solution.robot).clearance(joints, [each.solid for each in task.obstacles])
     return f"{scene} {number}", solution.status.value, clearance, solution.time.total, free.time.total
 
 

@@ -16,6 +16,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from bent_links import RADIUS, RATIOS, random_ends, reach_of, two_piece_ends
 from planted import ROBOT
 from planted_poses import (
     hopeless_pose,
@@ -26,7 +27,6 @@ from planted_poses import (
     stiff_link,
 )
 from scipy.spatial import cKDTree
-from test_robot_reach import RADIUS, RATIOS, random_ends, reach_of, two_piece_ends
 
 from synth.robot import ANYWHERE, Interval, LinkReach, MalleableLink, links_to_poses, why_no_link
 

@@ -23,8 +23,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from planted import planted_task
-from test_many_targets import scanned
+from planted import planted_task, scanned
 
 from synth.synthesis import Solution, solve
 

@@ -1,0 +1,181 @@
+"""Random tasks over the whole input space, each answer judged by a second implementation, tests/oracle.py.
+
+    python tests/benchmarks/fuzz.py [--tasks 300] [--first 0] [--workers 2] [--limit 300] [--save DIR]
+
+Other robots, free rigid links, joint ranges, places of the base, obstacles, floors, topologies, objectives,
+1 to 30 targets, tolerances of 0.01 to 20 mm. Planted tasks can be done, impossible ones cannot by
+construction, of wild ones nobody knows. Each is solved in a process of its own, which is ended when it takes
+far too long; what is at fault is printed with its task as YAML, or put into files by --save. One task again:
+--numbers N.
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import json
+import math
+import multiprocessing
+import sys
+import time
+import traceback
+import warnings
+from collections import Counter
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from ruamel.yaml import YAML
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from fuzz_judge import Fault, judge
+from fuzz_tasks import FuzzTask, fuzz_task
+
+from synth.export import solution_to_json
+from synth.guide import solution_text
+from synth.synthesis import solve
+from synth.task import parse_task
+
+_DRAWING = 600.0  # s: more than drawing and judging a task take
+
+
+def answered(number: int, seed: int) -> dict:
+    """Draw, solve and judge one task; return all that is counted, as plain values."""
+    fuzz = fuzz_task(number)
+    outcome = {"number": number, "kind": fuzz.kind, "why": fuzz.why, "tags": fuzz.tags, "faults": []}
+    outcome |= {"targets": len(fuzz.content["targets"]), "yaml": as_yaml(fuzz), "status": "exception"}
+    began, spent = time.perf_counter(), time.process_time()
+    try:
+        with warnings.catch_warnings(record=True) as warned:
+            warnings.simplefilter("always")
+            task = parse_task(fuzz.content)
+            solution = solve(task, seed=seed)
+            outcome["time"] = time.perf_counter() - began
+            outcome["processor"] = time.process_time() - spent
+            content, text = solution_to_json(solution), solution_text(solution)
+        json.dumps(content, allow_nan=False)
+    except Exception:  # noqa: BLE001 - whatever is raised is what is looked for
+        told = traceback.format_exc().strip().splitlines()
+        place = next((line.strip() for line in reversed(told) if "/synth/" in line), "")
+        outcome["faults"].append(Fault("exception", f"{told[-1]} ({place})"))
+        took = {"time": time.perf_counter() - began, "processor": time.process_time() - spent}
+        return outcome | took
+    outcome["status"], outcome["message"] = content["status"], content["message"]
+    told = Counter(
+        f"{each.category.__name__}: {each.message} ({Path(each.filename).name})" for each in warned
+    )
+    outcome["faults"] += [Fault("warning", f"{words}, {count} times") for words, count in told.items()]
+    outcome["faults"] += judge(fuzz, task, content, text)
+    return outcome
+
+
+def as_yaml(fuzz: FuzzTask) -> str:
+    stream = io.StringIO()
+    YAML(typ="safe").dump(fuzz.content, stream)
+    return stream.getvalue()
+
+
+def _send(pipe, number: int, seed: int) -> None:
+    pipe.send(answered(number, seed))
+
+
+def outcome_of(number: int, seed: int, limit: float) -> dict:
+    """Answer one task in a process of its own, and end it if it takes too long or dies."""
+    mine, its = multiprocessing.Pipe(duplex=False)
+    process = multiprocessing.get_context("fork").Process(target=_send, args=(its, number, seed), daemon=True)
+    process.start()
+    its.close()
+    lost = {"number": number, "kind": "?", "why": "", "tags": [], "targets": 0, "yaml": ""}
+    lost |= {"time": limit, "processor": math.nan}
+    try:
+        if mine.poll(limit + _DRAWING):
+            return mine.recv()
+        process.terminate()
+        fault = Fault("time", f"no answer after {limit + _DRAWING:.0f} s")
+    except EOFError:
+        process.join()
+        fault = Fault("exception", f"the process died: exit code {process.exitcode}")
+    finally:
+        process.join(10.0)
+    return lost | {"status": "none", "faults": [fault]}
+
+
+def report(outcomes: list[dict], limit: float) -> None:
+    print(
+        "\nkind         tasks  "
+        + "  ".join(f"{s:>17}" for s in STATUSES)
+        + "   processor time: median, 95 %, most"
+    )
+    for kind in sorted({outcome["kind"] for outcome in outcomes}):
+        mine = [outcome for outcome in outcomes if outcome["kind"] == kind]
+        counts = Counter(outcome["status"] for outcome in mine)
+        times = [outcome["processor"] for outcome in mine if not math.isnan(outcome["processor"])]
+        cells = "  ".join(f"{counts[status]:>17}" for status in STATUSES)
+        print(
+            f"{kind:<12} {len(mine):>5}  {cells}  {np.median(times):>5.2f} s "
+            f"{np.percentile(times, 95):>5.1f} s {max(times):>5.1f} s"
+        )
+    faults = [(outcome, Fault(*fault)) for outcome in outcomes for fault in outcome["faults"]]
+    by_kind = Counter(fault.kind for _, fault in faults)
+    tasks = {kind: len({o["number"] for o, f in faults if f.kind == kind}) for kind in by_kind}
+    planted = [outcome for outcome in outcomes if outcome["kind"] == "planted"]
+    found = sum(outcome["status"] == "found" for outcome in planted)
+    slow = sum(outcome["time"] > limit for outcome in outcomes)
+    print(f"\nplanted: {found} of {len(planted)} found; {slow} tasks took over {limit:.0f} s")
+    print(
+        "faults: "
+        + (", ".join(f"{n} {kind} in {tasks[kind]} tasks" for kind, n in by_kind.most_common()) or "none")
+    )
+    for outcome, fault in sorted(faults, key=lambda each: (each[1].kind, each[0]["number"])):
+        tags = ", ".join(outcome["tags"] + [outcome["why"]] * bool(outcome["why"]))
+        print(f"  {fault.kind}: task {outcome['number']} ({outcome['kind']}; {tags}): {fault.sentence}")
+
+
+STATUSES = ("found", "best_effort", "proven_impossible", "limit", "failed", "exception")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--tasks", type=int, default=300)
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--numbers", type=int, nargs="*", help="these tasks only")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the search")
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--limit", type=float, default=300.0, metavar="S")
+    parser.add_argument("--save", type=Path, metavar="DIR", help="for the tasks at fault, and outcomes.json")
+    arguments = parser.parse_args()
+    numbers = arguments.numbers or range(arguments.first, arguments.first + arguments.tasks)
+    outcomes = []
+    with ThreadPoolExecutor(arguments.workers) as executor:
+        answer = partial(outcome_of, seed=arguments.seed, limit=arguments.limit)
+        jobs = [executor.submit(answer, number) for number in numbers]
+        for done, job in enumerate(as_completed(jobs), start=1):
+            outcome = job.result()
+            outcomes.append(outcome)
+            print(
+                f"{done:>4} task {outcome['number']:>4} {outcome['kind']:<10} {outcome['status']:<17} "
+                f"{outcome['time']:>6.1f} s, processor {outcome['processor']:.1f} s",
+                flush=True,
+            )
+            for kind, sentence in outcome["faults"]:
+                print(f"       {kind}: {sentence}", flush=True)
+    outcomes.sort(key=lambda outcome: outcome["number"])
+    report(outcomes, arguments.limit)
+    for outcome in outcomes:
+        serious = [fault for fault in outcome["faults"] if Fault(*fault).kind != "instructions"]
+        if serious and arguments.save is None:
+            print(f"\n# task {outcome['number']}: {Fault(*serious[0]).sentence}\n{outcome['yaml']}")
+        elif serious:
+            arguments.save.mkdir(parents=True, exist_ok=True)
+            (arguments.save / f"fuzz-{outcome['number']}.yaml").write_text(outcome["yaml"])
+    if arguments.save is not None:
+        arguments.save.mkdir(parents=True, exist_ok=True)
+        (arguments.save / "outcomes.json").write_text(json.dumps(outcomes, indent=1))
+
+
+if __name__ == "__main__":
+    main()

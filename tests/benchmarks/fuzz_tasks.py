@@ -1,0 +1,346 @@
+"""Random tasks over the whole input space, as task files: other robots, places, obstacles, questions.
+
+A task is planted (a legal shape of unequal arcs, its targets by the oracle's kinematics at legal joint
+angles, clear of everything: so it can be done), impossible by construction, or wild (nobody knows).
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.optimize import least_squares
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from oracle import OracleArm, distance_from_solid, longest_rod
+
+from synth.task import Task, parse_task
+
+KINDS = {"planted": 0.55, "impossible": 0.15, "wild": 0.3}
+TOPOLOGIES = {"any": 0.6, "general": 0.1, "puma": 0.1, "scara": 0.1, "spherical": 0.1}
+ROOM = 2e-3  # m: the least clearance of a planted arm
+_TRIES, _TRIES_BENT = 400, 25  # shapes drawn before the hardware is drawn anew
+
+
+@dataclass
+class FuzzTask:
+    """A task file's content, and what is known of its answer.
+
+    Attributes:
+        number: The seed that draws it again.
+        kind: One of KINDS.
+        content: The task file, lengths in its own unit.
+        planted: The planted arm, or None.
+        joints: Its joint angles at the targets, rad.
+        why: What makes the task impossible, or what is special about it.
+    """
+
+    number: int
+    kind: str
+    content: dict[str, Any]
+    planted: OracleArm | None = None
+    joints: np.ndarray | None = None
+    why: str = ""
+    tags: list[str] = field(default_factory=list)
+
+
+def chosen(rng, shares):
+    return str(rng.choice(list(shares), p=list(shares.values())))
+
+
+def log_uniform(rng, low, high, size=None):
+    return np.exp(rng.uniform(np.log(low), np.log(high), size))
+
+
+def rounded(value):
+    """Return numbers that YAML prints and reads alike."""
+    if isinstance(value, dict):
+        return {key: rounded(item) for key, item in value.items()}
+    if isinstance(value, list | tuple | np.ndarray):
+        return [rounded(item) for item in value]
+    return float(value) if isinstance(value, float | np.floating) else value
+
+
+def random_robot(rng, tags):
+    """Return a robot as a mapping in mm."""
+    if rng.uniform() < 0.25:
+        tags.append("preset")
+        return "malleable-2dof"
+    radius = log_uniform(rng, 40.0, 300.0)
+    lower = radius * log_uniform(rng, 1.5, 8.0)
+    upper = lower * rng.choice([1.0, rng.uniform(1.0, 1.2), rng.uniform(1.2, 2.0)])
+    link = {"length": lower if upper == lower else [lower, upper], "min_bend_radius": radius}
+    if rng.uniform() < 0.7:
+        link["diameter"] = radius * rng.uniform(0.05, 0.9)
+    if rng.uniform() < 0.6:
+        link["max_total_bend_deg"] = rng.uniform(60.0, 450.0)
+    d34 = log_uniform(rng, 20.0, 200.0)
+    robot = {"d12": log_uniform(rng, 10.0, 300.0), "link": link, "d34": d34}
+    tip = 0.5 * d34
+    if rng.uniform() < 0.5:
+        tip = rng.uniform(-0.5, 1.5) * d34
+        robot["tip_offset"] = tip
+    robot["rigid_link"] = random_rigid_link(rng, tip, d34, lower, tags)
+    limits = {}
+    for name, around in (("base", rng.uniform(-180.0, 360.0)), ("second", 180.0)):
+        kind = rng.choice(["absent", "wide", "narrow"], p=[0.25, 0.45, 0.3])
+        if kind == "absent":
+            continue
+        width = rng.uniform(200.0, 360.0) if kind == "wide" else log_uniform(rng, 10.0, 200.0)
+        middle = around + rng.uniform(-60.0, 60.0)
+        limits[name] = [middle - 0.5 * width, middle + 0.5 * width]
+        tags.append(f"{kind} {name}")
+    if limits:
+        robot["joint_limits_deg"] = limits
+    return robot
+
+
+def random_rigid_link(rng, tip, d34, length, tags):
+    """Return d35 and d45 in mm: fixed, one free, or both; some ranges reach a flat triangle, R = 0."""
+    reach, aside = length * rng.uniform(0.2, 1.2), rng.normal() * 0.3 * d34
+    d35, d45 = np.hypot(reach, tip + aside), np.hypot(reach, tip + aside - d34)
+    free = rng.choice(["fixed", "d35", "d45", "both"], p=[0.55, 0.1, 0.1, 0.25])
+    flat = free != "fixed" and rng.uniform() < 0.4
+    # The triangle is flat where d35 and d45 differ by d34.
+    share = rng.uniform(1.2, 3.0) * d34 / min(d35, d45) if flat else rng.uniform(0.005, 0.15)
+    share = min(share, 0.9)
+    rigid = {"d35": d35, "d45": d45}
+    for name in ("d35", "d45"):
+        if free in {name, "both"}:
+            rigid[name] = [rigid[name] * (1.0 - share), rigid[name] * (1.0 + share * rng.uniform(0.2, 1.0))]
+    if rng.uniform() < 0.4:
+        rigid["diameter"] = rng.uniform(2.0, 40.0)
+    tags.append(f"rigid {free}" + (" flat" if flat else ""))
+    return rigid
+
+
+def random_content(rng, tags):
+    """Return a task without targets and obstacles, as a mapping in mm."""
+    content = {"synth": 1, "length_unit": "mm", "robot": random_robot(rng, tags)}
+    topology = chosen(rng, TOPOLOGIES)
+    if topology != "any":
+        content["topology"] = topology
+        tags.append(topology)
+    if rng.uniform() < 0.4:
+        content["objective"] = "minimax"
+        tags.append("minimax")
+    floor = rng.choice(["absent", "null", "low", "high"], p=[0.4, 0.25, 0.2, 0.15])
+    d12 = content["robot"]["d12"] if isinstance(content["robot"], dict) else 58.0
+    if floor == "null":
+        content["floor"] = None
+    elif floor == "low":
+        content["floor"] = -rng.uniform(20.0, 400.0)
+    elif floor == "high":
+        content["floor"] = d12 * rng.uniform(0.1, 0.9)
+    if rng.uniform() < 0.5:
+        # A floor that is written is a height above the base here: only with P1 at z = 0 has it one reading.
+        height = 0.0 if floor in {"low", "high"} else rng.normal() * 300.0
+        content["base"] = {
+            "position": [*(rng.normal(size=2) * 300.0), height],
+            "yaw_deg": rng.uniform(-180.0, 180.0),
+        }
+    tags.append(f"floor {floor}")
+    return rounded(content)
+
+
+def parsed(content, targets=((0.0, 0.0, 0.0),)) -> Task:
+    """Return the values of a task file's content, with targets of no consequence where it has none."""
+    return parse_task({"targets": [{"position": list(point)} for point in targets]} | content)
+
+
+def random_arm(task: Task, rng) -> OracleArm:
+    """Return a shape of three to six unequal arcs, mostly within the limits of length and bend."""
+    robot = task.robot
+    arcs = int(rng.integers(3, 7))
+    length = rng.uniform(robot.link.length.lower, robot.link.length.upper)
+    shares = rng.uniform(0.5, 1.5, arcs)
+    lengths = length * shares / shares.sum()
+    bends = np.sqrt(rng.uniform(size=arcs)) / robot.link.min_bend_radius
+    bends *= min(1.0, rng.uniform(0.5, 1.0) * robot.link.max_total_bend / float(bends @ lengths))
+    turns = rng.uniform(0.0, 2.0 * np.pi, arcs)
+    curvatures = bends[:, None] * np.column_stack([np.cos(turns), np.sin(turns)])
+    d35, d45 = (rng.uniform(i.lower, i.upper) for i in (robot.rigid_link.d35, robot.rigid_link.d45))
+    base = task.base
+    return OracleArm(robot, curvatures, lengths, d35, d45, np.array(base.position), base.yaw)
+
+
+def bent_into(arm: OracleArm, topology: str) -> OracleArm | None:
+    """Bend a shape until its axes meet, or are parallel, to rounding; None where that does not work."""
+
+    def bent(flat):
+        return OracleArm(arm.robot, flat.reshape(-1, 2), arm.lengths, arm.d35, arm.d45, arm.position, arm.yaw)
+
+    def off(flat):
+        frame, origin = bent(flat).end
+        if topology == "scara":
+            return frame[:2, 0]
+        height = 0.0 if topology == "spherical" else arm.robot.d12
+        return frame[:, 1:].T @ (origin - [0.0, 0.0, height])
+
+    answer = least_squares(off, arm.curvatures.ravel(), xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=60)
+    return bent(answer.x) if np.abs(answer.fun).max() < 1e-10 else None
+
+
+def planted_arm(task: Task, rng) -> OracleArm | None:
+    """Return a legal shape of the topology asked for, or None if none is drawn."""
+    topology = task.topology.value
+    special = topology not in {"any", "general"}
+    for _ in range(_TRIES_BENT if special else _TRIES):
+        arm = random_arm(task, rng)
+        if special:
+            arm = bent_into(arm, topology)
+        if arm is None or not arm.is_topology(topology):
+            continue
+        if not arm.breaches_of_shape(task.floor, spacing=2e-3) and not arm.breaches_of_shape(task.floor):
+            return arm
+    return None
+
+
+def legal_joints(task: Task, arm: OracleArm, count, rng):
+    """Return joint angles [count, 2] at which the arm is legal, off the ends of their ranges, or None."""
+    limits = task.robot.joint_limits
+    kept = []
+    for _ in range(20 * count):
+        joints = [
+            rng.uniform(i.lower + 1e-3 * (i.upper - i.lower), i.upper - 1e-3 * (i.upper - i.lower))
+            for i in (limits.base, limits.second)
+        ]
+        if not arm.breaches_at(joints, task.floor) and arm.rod_from_tube(joints) > 1e-4:
+            kept.append(joints)
+            if len(kept) == count:
+                return np.array(kept)
+    return None
+
+
+def random_obstacle(rng, size, around):
+    """Return a solid as a mapping in mm, about a point in mm."""
+    centre = around + rng.normal(size=3) * 0.4 * size
+    kind = rng.choice(["sphere", "box", "capsule"])
+    if kind == "sphere":
+        return {"sphere": {"center": centre, "radius": log_uniform(rng, 0.01, 0.3) * size}}
+    if kind == "box":
+        extent = log_uniform(rng, 0.01, 0.7, 3) * size
+        return {"box": {"center": centre, "size": extent, "yaw_deg": rng.uniform(-180.0, 180.0)}}
+    along = rng.normal(size=3) * 0.3 * size
+    radius = log_uniform(rng, 0.005, 0.1) * size
+    return {"capsule": {"from": centre - along, "to": centre + along, "radius": radius}}
+
+
+def with_obstacles(task_of, content, around, size, rng, clear):
+    """Return the content with up to four obstacles, each of them, as a solid, one that `clear` lets pass."""
+    obstacles = []
+    for _ in range(int(rng.choice([0, 1, 2, 4], p=[0.5, 0.2, 0.15, 0.15]))):
+        for _ in range(30):
+            entry = rounded(random_obstacle(rng, size, around))
+            if clear(task_of(content | {"obstacles": [entry]}).obstacles[0].solid):
+                obstacles.append(entry)
+                break
+    return content | ({"obstacles": obstacles} if obstacles else {})
+
+
+def with_targets(content, points, rng):
+    """Return the content with points, m, as targets: a tolerance for all or for each, some with weights."""
+    count = len(points)
+    if rng.uniform() < 0.5:
+        tolerances = np.full(count, log_uniform(rng, 0.01, 20.0))
+    else:
+        tolerances = log_uniform(rng, 0.01, 20.0, count)
+    targets = [
+        {"name": f"t{i + 1}", "position": 1e3 * point, "tolerance": tolerance}
+        for i, (point, tolerance) in enumerate(zip(points, tolerances, strict=True))
+    ]
+    if rng.uniform() < 0.2:
+        for target in targets:
+            target["weight"] = log_uniform(rng, 0.1, 10.0)
+    return rounded(content | {"targets": targets})
+
+
+def fuzz_task(number: int) -> FuzzTask:
+    """Return the task of a number."""
+    rng = np.random.default_rng([number, 10])
+    kind = chosen(rng, KINDS)
+    while True:
+        tags: list[str] = []
+        content = random_content(rng, tags)
+        task = parsed(content)
+        count = round(float(log_uniform(rng, 1.0, 30.0)))
+        arm = planted_arm(task, rng)
+        joints = legal_joints(task, arm, count, rng) if arm is not None else None
+        if joints is None:
+            continue
+        drawn = _drawn(rng, kind, content, task, arm, joints)
+        if drawn is None:
+            continue
+        content, why, solvable = drawn
+        if solvable:
+            # What goes to the task file and back must still be what was planted.
+            task = parsed(content)
+            assert arm.misses(joints, task.table.positions).max() < 1e-9
+        content = {"synth": content["synth"], "name": f"fuzz {number}"} | content
+        return FuzzTask(
+            number, kind, content, arm if solvable else None, joints if solvable else None, why, tags
+        )
+
+
+def _drawn(rng, kind, content, task, arm, joints):
+    """Return the whole content, what is special, and whether the planted arm does it; None to try again."""
+    points = arm.reached(joints)
+    size = 1e3 * (task.robot.link.length.upper + longest_rod(task.robot))
+    middle = 1e3 * points.mean(axis=0)
+    p2 = arm.to_task(arm.axis_points[1])
+
+    def clear(solid):
+        return (
+            distance_from_solid(solid, p2) > arm.tube_radius + ROOM and arm.clearance(joints, [solid]) >= ROOM
+        )
+
+    if kind == "planted":
+        content = with_obstacles(parsed, content, middle, size, rng, clear)
+        return with_targets(content, points, rng), "", True
+    if kind == "wild":
+        noise = size * log_uniform(rng, 1e-4, 0.3) * 1e-3
+        moved = points + rng.normal(size=points.shape) * noise
+        content = with_obstacles(parsed, content, middle, size, rng, lambda _: True)
+        return with_targets(content, moved, rng), f"noise {1e3 * noise:.2f} mm", False
+    return _impossible(rng, content, task, points, size, p2)
+
+
+def _impossible(rng, content, task, points, size, p2):
+    """Return a content in which one thing is impossible."""
+    victim = int(rng.integers(len(points)))
+    why = str(
+        rng.choice(["too far", "below the floor", "in an obstacle", "base in an obstacle", "floor above P2"])
+    )
+    content = with_targets(content, points, rng)
+    tolerance = content["targets"][victim]["tolerance"]
+    target = content["targets"][victim]
+    if why == "too far":
+        direction = rng.normal(size=3)
+        distance = size * (1.0 + log_uniform(rng, 1e-4, 0.5)) + tolerance
+        target["position"] = 1e3 * p2 + distance * direction / np.linalg.norm(direction)
+    elif why == "below the floor":
+        if task.floor is None:
+            return None
+        position = np.array(target["position"])
+        height = 1e3 * (task.base.position[2] + task.floor)
+        position[2] = height - tolerance - log_uniform(rng, 0.01, 200.0)
+        target["position"] = position
+    elif why == "in an obstacle":
+        depth = tolerance + log_uniform(rng, 0.05, 100.0)
+        radius = depth * rng.uniform(1.0, 1.5)
+        direction = rng.normal(size=3)
+        centre = 1e3 * points[victim] + (radius - depth) * direction / np.linalg.norm(direction)
+        content["obstacles"] = [{"sphere": {"center": centre, "radius": radius}}]
+    elif why == "base in an obstacle":
+        extent = log_uniform(rng, 5.0, 200.0, 3)
+        centre = 1e3 * p2 + rng.uniform(-0.4, 0.4, 3) * extent
+        content["obstacles"] = [{"box": {"center": centre, "size": extent, "yaw_deg": 0.0}}]
+    else:
+        content["floor"] = 1e3 * task.robot.d12 + log_uniform(rng, 0.1, 100.0)
+        base = content.get("base", {"position": [0.0, 0.0, 0.0]})
+        content["base"] = base | {"position": [*base["position"][:2], 0.0]}
+    return rounded(content), why, False

@@ -1,0 +1,165 @@
+"""The facts of the worked tasks in `problems/`, and whether a solution agrees with them, by the oracle.
+
+Facts are in millimetres and degrees.
+"""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+from oracle import SLACK, OracleArm
+from pydantic import BaseModel, ConfigDict, Field
+from ruamel.yaml import YAML
+
+import synth
+
+PROBLEMS = Path(__file__).parents[1] / "problems"
+NAMES = sorted(path.name for path in PROBLEMS.iterdir() if path.is_dir())
+Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
+Point = Annotated[list[float], Field(min_length=3, max_length=3)]
+Quantity = Literal["worst_miss", "total_bend_deg", "circle_radius", "axes_apart", "common_normal_height"]
+
+
+class Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+
+
+class Sphere(Strict):
+    centre: Point
+    radius: float
+    within: float
+
+
+class Plane(Strict):
+    height: float
+    within: float
+
+
+class Bend(Strict):
+    length: float
+    bend_radius: float | None = None  # a straight piece
+    towards_deg: float = 0.0
+
+
+class RigidLink(Strict):
+    d35: float
+    d45: float
+
+
+class Planted(Strict):
+    arcs: list[Bend]
+    rigid_link: RigidLink | None = None
+    joints_deg: dict[str, Pair]
+    within: float
+
+
+class Facts(Strict):
+    source: str
+    status: Literal["found", "best_effort", "proven_impossible"]
+    between: dict[Quantity, Pair]
+    sphere: Sphere | None = None
+    plane: Plane | None = None
+    planted: Planted | None = None
+
+
+def facts_of(name):
+    return Facts.model_validate(YAML(typ="safe").load(PROBLEMS / name / "facts.yaml"))
+
+
+def task_of(name):
+    return synth.load_task(PROBLEMS / name / "task.yaml")
+
+
+def planted_arm_of(task, planted):
+    """Return the arm that the facts say the targets were planted with."""
+    towards = np.radians([arc.towards_deg for arc in planted.arcs])
+    bends = np.array([1e3 / arc.bend_radius if arc.bend_radius else 0.0 for arc in planted.arcs])
+    curvatures = bends[:, None] * np.column_stack([np.cos(towards), np.sin(towards)])
+    rigid, chosen = task.robot.rigid_link, planted.rigid_link
+    d35, d45 = (chosen.d35 / 1e3, chosen.d45 / 1e3) if chosen else (rigid.d35.lower, rigid.d45.lower)
+    lengths = np.array([arc.length for arc in planted.arcs]) / 1e3
+    return OracleArm(task.robot, curvatures, lengths, d35, d45, task.base.position, task.base.yaw)
+
+
+def measured(task, arm, joints):
+    """Return what `between` may speak of, in mm and deg."""
+    u, (centre, radius) = arm.end[0][:, 0], arm.circle
+    foot = centre - u * (centre[:2] @ u[:2]) / max(u[:2] @ u[:2], 1e-12)  # nearest to axis 1 on axis 2
+    return {
+        "worst_miss": 1e3 * arm.misses(joints, task.table.positions).max(),
+        "total_bend_deg": np.degrees(arm.total_bend),
+        "circle_radius": 1e3 * radius,
+        "axes_apart": 1e3 * np.hypot(foot[0], foot[1]),
+        "common_normal_height": 1e3 * foot[2],
+    }
+
+
+def sweep(task, arm):
+    """Return P5 all along the range of joint 2, mm: the workspace, but for the turn of joint 1."""
+    second = task.robot.joint_limits.second
+    theta2 = np.linspace(second.lower, second.upper, 200)
+    return 1e3 * arm.end_effector(np.column_stack([np.full(200, np.pi), theta2]))
+
+
+def limits_broken(task, arm, joints):
+    """Return the limits that an arm breaks in itself or at a target, as sentences."""
+    solids = [obstacle.solid for obstacle in task.obstacles]
+    breaches = [*arm.breaches_of_shape(task.floor)]
+    for each in joints:
+        breaches += arm.breaches_at(each, task.floor, solids)
+    told = [f"{breach.limit} broken by {breach.amount:.2e}" for breach in breaches]
+    if not arm.is_topology(task.topology.value):
+        told.append(f"not {task.topology.value}")
+    return told
+
+
+def broken_facts(facts, task, solution):
+    """Return what a solution says or is against the facts, as sentences; none where all holds."""
+    content = synth.solution_to_json(solution)
+    told = [] if content["status"] == facts.status else [f"status {content['status']}: {content['message']}"]
+    if content["link"] is None:
+        return [*told, "no shape"]
+    arm = OracleArm.stated(task, content)
+    joints = np.array([target["joints"] for target in content["targets"]])
+    return [
+        *told,
+        *limits_broken(task, arm, joints),
+        *_misses_broken(task, arm, content["targets"], joints),
+        *(_clearances_broken(task, arm, content["targets"]) if task.obstacles else ()),
+        *_numbers_broken(facts, measured(task, arm, joints), sweep(task, arm)),
+    ]
+
+
+def _misses_broken(task, arm, targets, joints):
+    misses = arm.misses(joints, task.table.positions)
+    for target, given, miss in zip(targets, task.targets, misses, strict=True):
+        if target["name"] != given.name:
+            yield f"{given.name} is called {target['name']}"
+        if abs(miss - target["miss"]) > SLACK:
+            yield f"{given.name} misses by {miss}, stated {target['miss']}"
+        if target["within_tolerance"] != (miss <= given.tolerance):
+            yield f"{given.name} misses by {miss}, stated within tolerance: {target['within_tolerance']}"
+
+
+def _numbers_broken(facts, numbers, swept):
+    for quantity, (low, high) in facts.between.items():
+        if not low <= numbers[quantity] <= high:
+            yield f"{quantity} is {numbers[quantity]:.6g}, not between {low} and {high}"
+    if sphere := facts.sphere:
+        off = np.abs(np.linalg.norm(swept - sphere.centre, axis=1) - sphere.radius).max()
+        if not off <= sphere.within:
+            yield f"the workspace is {off:.3g} mm off the sphere"
+    if plane := facts.plane:
+        off = np.abs(swept[:, 2] - plane.height).max()
+        if not off <= plane.within:
+            yield f"the workspace is {off:.3g} mm off the plane"
+
+
+def _clearances_broken(task, arm, targets):
+    """Compare with the oracle: a stated clearance is a lower bound, to 0.1 mm, and told up to 100 mm."""
+    solids, told = [obstacle.solid for obstacle in task.obstacles], []
+    for target in targets:
+        stated, true = target["clearance"], min(float(arm.clearances(target["joints"], solids).min()), 0.1)
+        if not max(true - 1e-4, -SLACK) <= stated <= true + 2.0 * SLACK:
+            told.append(f"{target['name']} is clear by {true:.6f} m, stated {stated}")
+    return told
