@@ -1,18 +1,21 @@
 """Gauss-Newton on many shapes: its derivatives by differences, and where it leads."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from planted import ROBOT, noisy, planted_task
 
+from synth.geometry import Capsule
 from synth.robot import BasePose, Interval, JointLimits, RigidLink
 from synth.synthesis.category_offsets import category_offsets, category_slopes
 from synth.synthesis.population import Population, free_directions, in_equal_arcs, into_limits
 from synth.synthesis.postures import Aims, Postures
-from synth.synthesis.refinement import refine, relative_weights
+from synth.synthesis.refinement import _curvature_of_norm, cleared, level, refine, relative_weights
 from synth.synthesis.residuals import Residuals
-from synth.task import Objective, Topology
+from synth.synthesis.separation import overlaps
+from synth.task import Objective, Obstacle, PointTarget, Topology
 
 FREE = replace(
     ROBOT, name="rigid link to choose", rigid_link=RigidLink(Interval(0.40, 0.5), Interval(0.42, 0.48))
@@ -183,3 +186,73 @@ def test_the_parts_in_which_shapes_are_refined_do_not_matter():
     best = whole.best(10)
     assert (np.diff(best.cost) >= 0.0).all()
     assert best.cost[0] == whole.cost.min()
+
+
+def test_the_curvature_of_the_norm_is_its_second_derivative_where_misses_are_linear():
+    """By differences of the squared p-norm itself, for misses that change linearly."""
+    rng = np.random.default_rng(7)
+    misses, slopes, exponent = rng.uniform(0.5, 1.0, 6), rng.normal(size=(6, 3)), 12.0
+
+    def squared_norm(x):
+        return np.mean((misses + slopes @ x) ** exponent) ** (2.0 / exponent)
+
+    cost = squared_norm(np.zeros(3))
+    shares = cost ** (1.0 - exponent / 2.0) * misses ** (exponent - 2.0) / 6.0
+    slope = slopes.T @ (shares * misses)
+    curvature = slopes.T @ (shares[:, None] * slopes)
+    half = _curvature_of_norm(exponent, np.array([cost]), curvature[None], slope[None])[0]
+    step = 1e-4
+    for i, j in itertools.product(range(3), repeat=2):
+        one, other = step * np.eye(3)[i], step * np.eye(3)[j]
+        mixed = squared_norm(one + other) - squared_norm(one - other)
+        mixed += squared_norm(-one - other) - squared_norm(other - one)
+        assert np.isclose(2.0 * half[i, j], mixed / (4.0 * step**2), rtol=1e-3, atol=1e-3)
+
+
+def test_the_worst_miss_is_levelled_to_what_no_small_change_improves():
+    task = noisy(8, objective=Objective.MINIMAX)
+    refined = level(task, refine(task, Population.sample(ROBOT, 60, np.random.default_rng(8))).best(12))
+    rng, best = np.random.default_rng(0), refined.best(1)
+    nearby = np.repeat(best.population.unknowns, 200, axis=0)
+    nearby = into_limits(ROBOT, nearby + 1e-3 * rng.normal(size=nearby.shape))
+    aims = Aims(task.positions, ROBOT.joint_limits)
+    worst = Postures.nearest(aims, Population(ROBOT, nearby).kinematics).squared.max(axis=1)
+    assert worst.min() > (1.0 - 1e-3) * best.cost[0]
+
+
+@pytest.mark.parametrize("objective", list(Objective))
+def test_a_rigid_link_that_is_a_flat_triangle_breaks_nothing(objective):
+    robot = replace(ROBOT, rigid_link=RigidLink(Interval(0.2, 0.5), Interval(0.2, 0.6)))
+    unknowns = np.array(Population.sample(robot, 20, np.random.default_rng(9)).unknowns)
+    unknowns[:, -1] = unknowns[:, -2] + robot.d34  # P3, P4 and P5 in line: P5 cannot move about axis 2
+    refined = refine(noisy(9, robot=robot, objective=objective), Population(robot, unknowns))
+    assert np.isfinite(refined.cost).all()
+
+
+def test_where_all_targets_are_met_the_worst_miss_has_no_slope_and_warns_of_nothing():
+    task, arm = planted_task(10, 5)
+    task = replace(task, floor=None, objective=Objective.MINIMAX)
+    here = Population.of(in_equal_arcs(arm))
+    met = refine(replace(task, objective=Objective.LEAST_SQUARES), here, iterations=40)
+    exact = met.population.kinematics.each_target().forward(*np.moveaxis(met.joints, -1, 0))[0]
+    task = replace(task, targets=tuple(PointTarget(f"t{i}", point) for i, point in enumerate(exact)))
+    refined = level(task, refine(task, met.population))
+    assert refined.cost[0] < 1e-18
+
+
+def test_shapes_are_moved_out_of_an_obstacle_though_only_the_rigid_link_is_in_it():
+    task, arm = planted_task(11, 3)
+    point = task.positions[0]
+    end = arm.end_frame[1]
+    joints, _ = arm.closest_joints(point)
+    middle = 0.5 * (point + BasePose(yaw=float(joints[0])).to_task(end))
+    thin = Obstacle("ball", Capsule.sphere(middle, 0.012))
+    task = replace(task, floor=None, obstacles=(thin,))
+    around = np.repeat(Population.of(in_equal_arcs(arm)).unknowns, 20, axis=0)
+    around = into_limits(ROBOT, around + 0.05 * np.random.default_rng(0).normal(size=around.shape))
+    before = refine(replace(task, obstacles=()), Population(ROBOT, around))
+    depth = overlaps(task, before.population, before.joints).max(axis=1)
+    after = cleared(task, before.take(np.flatnonzero(depth > 0.0)))
+    now = overlaps(task, after.population, after.joints).max(axis=1)
+    assert len(now)
+    assert np.median(now) < 0.2 * np.median(depth[depth > 0.0])
