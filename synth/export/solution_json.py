@@ -54,6 +54,7 @@ def solution_to_json(solution: Solution) -> dict[str, Any]:
             {"limit": each.limit, "amount": each.amount, "share": each.share, "sentence": each.sentence}
             for each in solution.releases
         ],
+        "notes": solution.notes,
         "alternatives": [_alternative(task, design) for design in designs[1:]],
     }
     return plain(content)

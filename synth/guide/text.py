@@ -48,6 +48,7 @@ def summary_text(solution: Solution) -> str:
     if solution.bound is not None and solution.bound.sentence not in solution.reasons:
         bullets.append(solution.bound.sentence)
     bullets += [f"{release.sentence} would do" for release in solution.releases]
+    bullets += solution.notes
     starts = "1 start" if solution.starts == 1 else f"{solution.starts} starts"
     bullets.append(f"seed {solution.seed}, {starts}, {solution.time.total:.2f} s")
     return "\n".join([headline, "=" * min(len(headline), 79), *(f"• {bullet}" for bullet in bullets)])
