@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from synth.synthesis import Progress
 
 _T = TypeVar("_T")
+_WRITING = 1.0  # s, that drawing the sheet and writing take on a usual machine
 DEBUG = "SYNTH_DEBUG"  # if this is set in the environment, what nobody foresaw is shown with its traceback
 
 
@@ -33,13 +34,15 @@ class Session:
 
     Args:
         time_limit: Time after which the command should have ended, s.
+        clock: Returns the time, s.
 
     Attributes:
         broken: Whether something broke that nobody foresaw.
     """
 
-    def __init__(self, time_limit: float) -> None:
-        self._until = time.perf_counter() + time_limit
+    def __init__(self, time_limit: float, clock: Callable[[], float] = time.perf_counter) -> None:
+        self._clock = clock
+        self._until = clock() + time_limit
         self._wishes = 0
         self.broken = False
 
@@ -50,7 +53,12 @@ class Session:
     @property
     def remaining(self) -> float:
         """The time left, s; never below 0."""
-        return max(self._until - time.perf_counter(), 0.0)
+        return max(self._until - self._clock(), 0.0)
+
+    @property
+    def for_search(self) -> float:
+        """The time left for a search, s: what is found is then still to be drawn and written."""
+        return max(self.remaining - _WRITING, 0.5 * self.remaining)
 
     @contextmanager
     def interruptible(self) -> Iterator[None]:

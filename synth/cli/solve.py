@@ -58,7 +58,7 @@ def solve_file(
             task,
             seed=seed,
             prove=prove,
-            time_limit=session.remaining,
+            time_limit=session.for_search,
             stop=session.stop,
             progress=progress,
         )
@@ -66,7 +66,7 @@ def solve_file(
             found = solution
             solution = session.attempt(
                 "looking for what would release the task",
-                lambda: explain(found, time_limit=session.remaining, stop=session.stop, progress=progress),
+                lambda: explain(found, time_limit=session.for_search, stop=session.stop, progress=progress),
                 replace(found, notes=(*found.notes, "what would release the task was not found out")),
             )
     if solution.breakdown:

@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from synth.geometry import Solid
     from synth.robot.arm import Arm
 
-# By how much a stated clearance may be less than the true one, m, for an arm of up to two metres; for a longer
-# one in proportion, or a bound for an arm as long as a street takes minutes.
+# By how much a stated clearance may be less than the true one, m, for an arm of up to two metres; for a
+# longer one in proportion, or a bound for an arm as long as a street takes minutes.
 _TOLERANCE = 2e-5
 MOST_CLEARANCE = 0.1  # m; a clearance beyond is stated as this much
 _SELF_CEILING = 0.02  # m, likewise for what the arm keeps from itself
