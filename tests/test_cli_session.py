@@ -55,7 +55,7 @@ def test_a_sheet_that_cannot_be_drawn_costs_no_answer(tmp_path, error):
     ("function", "keeps"),
     [
         ("synth.synthesis.screening.estimated_misses", False),
-        ("synth.synthesis.search.message", None),
+        ("synth.synthesis.search.message", True),
         ("synth.guide.text.summary_text", True),
         ("synth.export.files.solution_to_json", None),
         ("synth.task.reading.load_task", None),
@@ -94,8 +94,8 @@ def test_what_was_found_before_the_search_broke_off_is_kept(tmp_path):
     assert names(tmp_path) == NAMES
     written = json.loads((tmp_path / "solution.json").read_text(encoding="utf-8"))
     assert written["status"] == "failed"
-    assert written["targets"][0]["miss"] > 0.1
-    assert "misses by" in answer.stdout
+    assert max(target["miss"] for target in written["targets"]) > 0.1  # the shelf is out of reach
+    assert "MISSED" in answer.stdout
 
 
 def test_a_search_for_releases_that_breaks_off_keeps_the_solution(tmp_path):

@@ -84,11 +84,11 @@ def test_each_limit_is_told_and_the_search_within_gives_signs_of_life():
     told = []
 
     def stop():
-        return len(told) > 60
+        return len(told) > 3
 
     explain(solve(load_task(PROBLEMS / "out-of-reach/task.yaml")), progress=told.append, stop=stop)
     assert told[0].phase == "relaxing: link length"
-    assert len(told) > len({one.phase for one in told})
+    assert [one.phase for one in told].count(told[0].phase) > 1
 
 
 def six_targets_of_no_arm():

@@ -75,7 +75,7 @@ def solve_file(
     said = _say(session, solution, form=form, show_all=show_all)
     if not kept or not (said or output is not None) or session.broken:
         return ExitCode.BROKEN
-    if solution.status is Status.FAILED:
+    if solution.breakdown or solution.status is Status.FAILED:
         return ExitCode.BROKEN
     return ExitCode.DONE if solution.found else ExitCode.NOT_MET
 

@@ -164,16 +164,18 @@ class Search:
                 best = best_of(self.part, self.polishing.designs)[:1]
                 checked = [Design(one.arm, verify(self.task, one.arm)) for one in best]
                 designs = tuple(one for one in checked if one.verification.possible)
-        status, reasons = Status.FAILED, self._why_broken()
+        status: Status = Status.FAILED
+        reasons: tuple[str, ...] = ()
         with self.kept():
             status, reasons = self._verdict(designs)
-        if self.broke_off is not None:
-            reasons = (*self._why_broken(), *reasons)
+        words = status.sentence
+        with self.kept():
+            words = message(self.task, status, designs, (*self._why_broken(), *reasons))
         return Solution(
             self.task,
             status,
-            message(self.task, status, designs, reasons),
-            reasons,
+            words,
+            (*self._why_broken(), *reasons),
             self.seed,
             designs,
             self.starts,
