@@ -52,3 +52,9 @@ class InputError(SynthError):
 
 class SolverError(SynthError):
     """The solver broke down in a way that says nothing about the task."""
+
+
+def in_a_line(error: BaseException) -> str:
+    """Return what an error of any kind says, on one line, with its kind: for what nobody foresaw."""
+    words = " ".join(str(error).split())
+    return f"{words} ({type(error).__name__})" if words else type(error).__name__

@@ -1,14 +1,19 @@
 """What blocks a task is named, by how much, and what is named does release it."""
 
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from planted_blocked import blocked_task
 
-from synth.synthesis import explain, solve, verify
+from synth.export import solution_to_json
+from synth.guide import solution_text
+from synth.robot import PRESETS
+from synth.synthesis import explain, release, solve, verify
 from synth.synthesis.solve import follow
-from synth.task import load_task
+from synth.synthesis.watch import Watch
+from synth.task import PointTarget, Task, load_task
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 
@@ -27,9 +32,9 @@ def test_the_limit_that_is_too_tight_is_named_first(limit, planted):
 
 def test_each_release_is_enough_and_the_base_is_told_last():
     solution = explain(solve(load_task(PROBLEMS / "out-of-reach/task.yaml")))
-    assert [release.limit for release in solution.releases] == ["link length", "base"]
-    for release in solution.releases:
-        assert verify(release.task, release.design.arm, release.design.verification.joints).found
+    assert [each.limit for each in solution.releases] == ["link length", "base"]
+    for each in solution.releases:
+        assert verify(each.task, each.design.arm, each.design.verification.joints).found
     longer, base = solution.releases
     # 1277.7 mm from P2 to the shelf, 1156.9 mm of robot, 1 mm of tolerance
     assert 0.1198 < longer.amount < 0.1250
@@ -46,3 +51,78 @@ def test_nothing_blocks_what_was_found():
 def test_to_stop_keeps_what_is_known():
     solution = solve(load_task(PROBLEMS / "out-of-reach/task.yaml"))
     assert explain(solution, stop=lambda: True).releases == ()
+
+
+class Ticks:
+    """A clock that goes on by a second whenever it is looked at."""
+
+    def __init__(self):
+        self.now = 0.0
+
+    def __call__(self):
+        self.now += 1.0
+        return self.now
+
+
+def test_a_time_limit_is_kept_and_it_is_said_how_far_the_search_got(monkeypatch):
+    solution = solve(load_task(PROBLEMS / "out-of-reach/task.yaml"))
+    searches = []
+
+    def counted(*arguments, **options):
+        searches.append(arguments)
+        return follow(*arguments, **options)
+
+    monkeypatch.setattr(release, "follow", counted)
+    monkeypatch.setattr(release, "Watch", lambda limit, **options: Watch(limit, clock=Ticks(), **options))
+    stopped = explain(solution, time_limit=5.0)
+    assert len(searches) <= 5
+    assert "was stopped early: 0 of" in stopped.notes[0]
+    assert explain(solution, stop=lambda: True).notes
+
+
+def test_each_limit_is_told_and_the_search_within_gives_signs_of_life():
+    told = []
+
+    def stop():
+        return len(told) > 3
+
+    explain(solve(load_task(PROBLEMS / "out-of-reach/task.yaml")), progress=told.append, stop=stop)
+    assert told[0].phase == "relaxing: link length"
+    assert [one.phase for one in told].count(told[0].phase) > 1
+
+
+def six_targets_of_no_arm():
+    """Targets on and about axis 1, which is no place for the section of any arm's workspace."""
+    positions = [[r, 0.0, z] for r in (0.3, 0.45, 0.6) for z in (0.2, 0.45)] + [[0.45, 0.0, 0.325]]
+    targets = tuple(PointTarget(f"t{i}", p, tolerance=1e-3) for i, p in enumerate(positions))
+    return Task("grid", PRESETS["malleable-2dof"], targets)
+
+
+def solved(task):
+    """A solution that needs no long search: one start is enough to explain."""
+    return follow(task, (), starts=1)
+
+
+def test_where_no_limit_helps_it_says_so_and_how_near_any_surface_passes(monkeypatch):
+    solution = solved(six_targets_of_no_arm())
+    assert not solution.found
+    # Each limit on its own is what other tests are about; here none helps.
+    monkeypatch.setattr(release, "_released", lambda *_: None)
+    monkeypatch.setattr(release, "_base_moved", lambda *_: None)
+    explained = explain(solution)
+    assert explained.releases == ()
+    (note,) = explained.notes
+    assert "neither one limit relaxed alone" in note
+    assert "surface of revolution about axis 1" in note
+    miss = float(re.search(r"misses one by (\d+\.\d\d) mm", note).group(1))
+    assert 1.0 < miss < 200.0
+    assert note in solution_text(explained)
+    assert solution_to_json(explained)["notes"] == [note]
+
+
+def test_where_several_limits_block_together_it_says_that(monkeypatch):
+    task = load_task(PROBLEMS / "out-of-reach/task.yaml")
+    monkeypatch.setattr(release, "_released", lambda *_: None)
+    monkeypatch.setattr(release, "_base_moved", lambda *_: None)
+    (note,) = explain(solved(task)).notes
+    assert "with all limits relaxed together the task is met" in note

@@ -5,10 +5,14 @@ from __future__ import annotations
 import math
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from synth.version import __version__
+
+if TYPE_CHECKING:
+    from synth.cli.exit_codes import ExitCode
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -24,7 +28,8 @@ def main() -> None:
       0  found: every target is within its tolerance
       1  not found; the best effort is still given
       2  wrong input: every mistake is named
-      3  the solver broke down
+      3  something broke down; what was found before that is kept
+    130  ended at once by a second Ctrl-C; nothing more was written
     """
 
 
@@ -59,16 +64,19 @@ def solve(
 ) -> None:
     """Find a shape of the link for the targets in TASK.yaml.
 
-    Ctrl-C stops the search and gives the best shape so far.
+    Ctrl-C stops the search and gives the best shape so far; a second one ends at once.
     """
-    from synth.cli.solve import solve_file
+    from synth.cli.session import Session, run
 
-    form = "json" if as_json else "text"
-    code = solve_file(
-        task_file, output,
-        form=form, show_all=show_all, seed=seed, prove=prove, why=why, time_limit=time_limit,
-    )  # fmt: skip
-    sys.exit(code)
+    def command(session: Session) -> ExitCode:
+        from synth.cli.solve import solve_file
+
+        form = "json" if as_json else "text"
+        return solve_file(
+            session, task_file, output, form=form, show_all=show_all, seed=seed, prove=prove, why=why
+        )
+
+    sys.exit(run(command, time_limit))
 
 
 @main.command()
@@ -95,8 +103,14 @@ def inspect(config_file: Path, output: Path | None, form: str | None, seed: int,
       0  realisable: points in space have all distances within their bounds
       1  not realisable, or a number is impossible
       2  wrong input: every mistake is named
-      3  the solver broke down
+      3  something broke down; what was found before that is kept
+    130  ended at once by a second Ctrl-C; nothing more was written
     """
-    from synth.cli.inspect import inspect_file
+    from synth.cli.session import Session, run
 
-    sys.exit(inspect_file(config_file, output, form=form or "text", seed=seed, samples=samples))
+    def command(session: Session) -> ExitCode:
+        from synth.cli.inspect import inspect_file
+
+        return inspect_file(session, config_file, output, form=form or "text", seed=seed, samples=samples)
+
+    sys.exit(run(command, math.inf))

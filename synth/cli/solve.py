@@ -3,23 +3,24 @@
 from __future__ import annotations
 
 import json
+import os
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import click
-
 from synth.cli.exit_codes import ExitCode
-from synth.cli.session import interruptible, search_progress
+from synth.cli.say import say
+from synth.cli.session import DEBUG, search_progress
 from synth.errors import SynthError
-from synth.export import prepare_directory, solution_to_json, write_files
-from synth.guide import solution_text
-from synth.synthesis import Status, explain, solve
-from synth.task import load_task
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from synth.cli.session import Session
+    from synth.synthesis import Solution
+
 
 def solve_file(
+    session: Session,
     file: Path,
     output: Path | None,
     *,
@@ -28,11 +29,11 @@ def solve_file(
     seed: int,
     prove: bool,
     why: bool,
-    time_limit: float,
 ) -> ExitCode:
-    """Solve the task of a file and say what was found.
+    """Solve the task of a file and say what was found: first as files, then in words.
 
     Args:
+        session: The run of the command.
         file: The task file.
         output: Directory for the files, or None.
         form: "text" or "json".
@@ -40,30 +41,86 @@ def solve_file(
         seed: Seed of the search.
         prove: Whether to prove how much better any shape may be.
         why: Whether to look for what would release a task that is not met.
-        time_limit: Time after which the best shape so far is given, s.
 
     Returns:
         The exit code.
     """
-    try:
-        task = load_task(file)
-        if output is not None:
-            prepare_directory(output)
-        with interruptible() as stop, search_progress() as progress:
-            solution = solve(
-                task, seed=seed, prove=prove, time_limit=time_limit, stop=stop, progress=progress
+    from synth.export import SOLUTION_FILES, prepare_directory
+    from synth.task import load_task
+
+    task = load_task(file)
+    if output is not None:
+        prepare_directory(output, SOLUTION_FILES)
+    from synth.synthesis import Status, explain, solve
+
+    with search_progress() as progress:
+        solution = solve(
+            task,
+            seed=seed,
+            prove=prove,
+            time_limit=session.for_search,
+            stop=session.stop,
+            progress=progress,
+        )
+        if why:
+            found = solution
+            solution = session.attempt(
+                "looking for what would release the task",
+                lambda: explain(found, time_limit=session.for_search, stop=session.stop, progress=progress),
+                replace(found, notes=(*found.notes, "what would release the task was not found out")),
             )
-            if why:
-                solution = explain(solution, stop=stop)
-        if form == "json":
-            click.echo(json.dumps(solution_to_json(solution), indent=2, allow_nan=False))
-        else:
-            click.echo(solution_text(solution, alternatives=show_all))
-        for path in [] if output is None else write_files(solution, output):
-            click.echo(f"wrote {path}", err=True)
-    except SynthError as error:  # `solve` itself raises none: it returns what became of the search
-        click.echo(str(error), err=True)
-        return ExitCode.WRONG_INPUT
-    if solution.status is Status.FAILED:
+    if solution.breakdown:
+        _tell_of_breakdown(solution)
+    kept = output is None or _write(session, solution, output)
+    said = _say(session, solution, form=form, show_all=show_all)
+    if not kept or not (said or output is not None) or session.broken:
+        return ExitCode.BROKEN
+    if solution.breakdown or solution.status is Status.FAILED:
         return ExitCode.BROKEN
     return ExitCode.DONE if solution.found else ExitCode.NOT_MET
+
+
+def _tell_of_breakdown(solution: Solution) -> None:
+    if os.environ.get(DEBUG):
+        say(solution.breakdown, on_stderr=True)
+    say(
+        f"{solution.reasons[0] if solution.reasons else 'the search broke off'}; "
+        f"what was found before is kept; please report this ({DEBUG}=1 shows where)",
+        on_stderr=True,
+    )
+
+
+def _write(session: Session, solution: Solution, output: Path) -> bool:
+    """Write the files, and say which; whether all of them are there."""
+    from synth.export import write_what_can_be
+
+    try:
+        written = session.attempt("writing", lambda: write_what_can_be(solution, output), None)
+    except SynthError as error:  # the disk is full, say: the answer is still to be printed
+        say(str(error), on_stderr=True)
+        return False
+    if written is None:
+        return False
+    for path in written.paths:
+        say(f"wrote {path}", on_stderr=True)
+    for sentence in written.sentences:
+        say(sentence, on_stderr=True)
+    if any(isinstance(error, KeyboardInterrupt) for error in written.failed.values()):
+        raise KeyboardInterrupt
+    return not written.failed
+
+
+def _say(session: Session, solution: Solution, *, form: str, show_all: bool) -> bool:
+    """Print the answer; whether it was delivered."""
+    from synth.export import solution_to_json
+    from synth.guide import solution_text
+
+    def text() -> str:
+        if form == "json":
+            return json.dumps(solution_to_json(solution), indent=2, allow_nan=False)
+        return solution_text(solution, alternatives=show_all)
+
+    said = say(session.attempt("putting the answer into words", text, solution.message))
+    if not said:
+        say("the answer could not be printed: the output is full or broken", on_stderr=True)
+    return said

@@ -3,22 +3,45 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import json
 import os
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from synth.errors import SynthError
+from synth.errors import SynthError, in_a_line
 from synth.export.markers import markers_csv
 from synth.export.sheet import draw_sheet
 from synth.export.solution_json import solution_to_json
 from synth.guide import make_guide
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from synth.synthesis import Solution
+
+SOLUTION_FILES = ("solution.json", "guide.pdf", "markers.csv")
+
+
+@dataclass(frozen=True)
+class Written:
+    """What became of a set of files.
+
+    Attributes:
+        paths: Those that were written.
+        failed: What could not be made, by name, and why; an older file of that name is gone, for it would
+            belong to another solution.
+    """
+
+    paths: tuple[Path, ...]
+    failed: Mapping[str, BaseException]
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """A sentence for each file that could not be made."""
+        return tuple(f"{name} could not be made: {in_a_line(error)}" for name, error in self.failed.items())
 
 
 def write_files(solution: Solution, directory: str | os.PathLike[str]) -> list[Path]:
@@ -32,41 +55,69 @@ def write_files(solution: Solution, directory: str | os.PathLike[str]) -> list[P
         The paths of the files, in this order.
 
     Raises:
+        SynthError: They cannot be written. Files of an earlier run are then as they were. Or the sheet could
+            not be drawn: then the others are written, and there is no `guide.pdf`.
+    """
+    written = write_what_can_be(solution, directory)
+    if written.failed:
+        raise SynthError("; ".join(written.sentences)) from next(iter(written.failed.values()))
+    return list(written.paths)
+
+
+def write_what_can_be(solution: Solution, directory: str | os.PathLike[str]) -> Written:
+    """Write the files of a solution, without the sheet if it cannot be drawn, whatever the reason.
+
+    Args:
+        solution: What a synthesis found, whatever its status.
+        directory: Where to; it is made if it is not there. Files of these names are replaced.
+
+    Raises:
         SynthError: They cannot be written. Files of an earlier run are then as they were.
     """
     guide = make_guide(solution.task, solution.designs[0]) if solution.designs else None
-    return write_all(
-        {
-            "solution.json": json_bytes(solution_to_json(solution)),
-            "guide.pdf": draw_sheet(solution, guide),
-            "markers.csv": markers_csv(guide).encode(),
-        },
-        directory,
-    )
+    files = {
+        "solution.json": json_bytes(solution_to_json(solution)),
+        "markers.csv": markers_csv(guide).encode(),
+    }
+    failed: dict[str, BaseException] = {}
+    try:
+        files["guide.pdf"] = draw_sheet(solution, guide)
+    except (Exception, KeyboardInterrupt) as error:  # noqa: BLE001 - the answer is not lost with its drawing
+        failed["guide.pdf"] = error
+    files = {name: files[name] for name in SOLUTION_FILES if name in files}
+    return Written(tuple(write_all(files, directory, without=failed)), failed)
 
 
-def write_all(files: Mapping[str, bytes], directory: str | os.PathLike[str]) -> list[Path]:
-    """Write files into a directory, whole or not at all; a reader never meets half of one.
+def write_all(
+    files: Mapping[str, bytes], directory: str | os.PathLike[str], *, without: Iterable[str] = ()
+) -> list[Path]:
+    """Write files into a directory, all or none; a reader never meets half of one.
 
     Args:
         files: Contents by name.
         directory: Where to; it is made if it is not there.
+        without: Names of files that shall not be there any more.
 
     Returns:
         The paths of the files, in the order given.
 
     Raises:
-        SynthError: They cannot be written.
+        SynthError: They cannot be written. What stood there before stands there still.
     """
     directory = Path(directory)
+    gone = [directory / name for name in without]
     # All are written beside their places, then moved there; the process id keeps two runs apart.
     beside = {directory / name: directory / f".{name}.{os.getpid()}.part" for name in files}
     try:
         directory.mkdir(parents=True, exist_ok=True)
+        _see_that_files_can_be(beside)
         for path, temporary in beside.items():
             temporary.write_bytes(files[path.name])
-        for path, temporary in beside.items():
-            temporary.replace(path)
+        with _restored_if_it_fails([*beside, *gone]):
+            for path, temporary in beside.items():
+                temporary.replace(path)
+            for path in gone:
+                path.unlink(missing_ok=True)
     except OSError as error:
         raise _cannot_write(directory, error) from error
     finally:
@@ -76,26 +127,53 @@ def write_all(files: Mapping[str, bytes], directory: str | os.PathLike[str]) -> 
     return list(beside)
 
 
+@contextlib.contextmanager
+def _restored_if_it_fails(paths: Sequence[Path]) -> Iterator[None]:
+    """Put files back as they were, or away if they were not there, if a block fails."""
+    before = {path: path.read_bytes() if path.exists() else None for path in paths}
+    try:
+        yield
+    except BaseException:
+        for path, content in before.items():
+            with contextlib.suppress(OSError):
+                if content is None:
+                    path.unlink(missing_ok=True)
+                else:
+                    path.write_bytes(content)
+        raise
+
+
 def json_bytes(content: Mapping[str, object]) -> bytes:
     """Return plain data as the bytes of a JSON file."""
-    return (json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False) + "\n").encode()
+    text = json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+    return text.encode("utf-8", "backslashreplace")  # half a character of a foreign name is no reason to fail
 
 
-def prepare_directory(directory: str | os.PathLike[str]) -> None:
+def prepare_directory(directory: str | os.PathLike[str], names: Iterable[str] = ()) -> None:
     """Make a directory and see that files can be written there, before a search spends its time.
 
     Args:
         directory: The directory; it may be there.
+        names: Names of the files that are to be written.
 
     Raises:
         SynthError: Files cannot be written there.
     """
+    directory = Path(directory)
     try:
-        Path(directory).mkdir(parents=True, exist_ok=True)
+        directory.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=directory):
             pass
+        _see_that_files_can_be(directory / name for name in names)
     except OSError as error:
-        raise _cannot_write(Path(directory), error) from error
+        raise _cannot_write(directory, error) from error
+
+
+def _see_that_files_can_be(paths: Iterable[Path]) -> None:
+    """Raise an error if something that is no file stands in the place of one."""
+    for path in paths:
+        if path.is_dir():
+            raise IsADirectoryError(errno.EISDIR, f"{path.name} is a directory, and a file is to be there")
 
 
 def _cannot_write(directory: Path, error: OSError) -> SynthError:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from matplotlib.axes import Axes
+    from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
     from synth.guide import Guide, Placement
@@ -26,6 +27,8 @@ LINK, AXIS, TARGET, GHOST = "#0072B2", "#D55E00", "#000000", "#8C8C8C"
 # Which coordinates a view shows to the right and upwards: a third-angle projection.
 TOP, FRONT, SIDE = (0, 1), (0, 2), (1, 2)
 _POINTS_PER_MM = 72.0 / 25.4
+MOST_DRAWN = 1000  # targets, beside those that have a label: more cover each other
+_MOST_OF_LINK = 1000  # points of a very long link
 _AXIS_LENGTH = 120.0  # mm to either side of the markers, drawn of an axis
 
 
@@ -67,7 +70,8 @@ class Scene:
         if guide is not None:
             arm, check = solution.robot, solution.best.verification
             base, hold, reached = arm.base, guide.hold, check.within_tolerance
-            centreline = arm.shape.centreline() + arm.base_joint[1]
+            spacing = max(0.01, arm.shape.length / _MOST_OF_LINK)
+            centreline = arm.shape.centreline(spacing) + arm.base_joint[1]
             turns = [BasePose(yaw=angle) for angle in (hold.joint1, float(check.joints[0, 0]))]
             link, ghost = (1e3 * base.to_task(turn.to_task(centreline)) for turn in turns)
             rigid = np.stack([ghost[-1], 1e3 * check.reached[0]])
@@ -83,6 +87,14 @@ class Scene:
             ghost=ghost,
             rigid=rigid,
         )
+
+    @property
+    def drawn(self) -> NDArray[np.bool_]:
+        """Which targets are drawn, shape (n,): those with a label, and of many others an even choice."""
+        chosen = np.array([bool(label) for label in self.labels])
+        step = -(-len(chosen) // MOST_DRAWN)
+        chosen[::step] = True
+        return chosen
 
     @property
     def bounds(self) -> FloatArray:
@@ -173,18 +185,20 @@ def _draw_axis(axes: Axes, points: FloatArray, pick: list[int], labels: Labels) 
 
 def _draw_targets(axes: Axes, points: FloatArray, scene: Scene, labels: Labels) -> None:
     """Draw the targets: a filled circle where one is reached, a cross where it is missed."""
-    for point, reached, label in zip(points, scene.reached, scene.labels, strict=True):
-        marker, size = ("o", 4.5) if reached else ("X", 6.0)
+    drawn, reached = scene.drawn, np.array(scene.reached, dtype=bool)
+    for some, marker, size in ((drawn & reached, "o", 4.5), (drawn & ~reached, "X", 6.0)):
         axes.plot(
-            *point,
-            marker,
+            *points[some].T,
+            linestyle="none",
+            marker=marker,
             color=TARGET,
             markersize=size,
             markeredgecolor="white",
             markeredgewidth=0.6,
             zorder=8,
         )
-        if label:
-            labels.add(label, point)
+    for index in np.flatnonzero(drawn).tolist():
+        if scene.labels[index]:
+            labels.add(scene.labels[index], points[index])
         else:
-            labels.avoid_mark(point)
+            labels.avoid_mark(points[index])

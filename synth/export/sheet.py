@@ -12,7 +12,7 @@ import numpy as np
 
 from synth.export.drawings import draw
 from synth.export.page import HEIGHT, MARGIN, WIDTH, Page
-from synth.export.scene import Scene
+from synth.export.scene import MOST_DRAWN, Scene
 from synth.guide.text import axis_sentence, hold_sentence, link_sentence, tolerance_sentences
 from synth.version import __version__
 
@@ -144,6 +144,8 @@ def _targets(page: Page, solution: Solution, listed: Sequence[int]) -> None:
     heading = "Targets"
     if len(listed) < len(task.targets):
         heading = f"{len(listed)} of {len(task.targets)} targets" + (", the worst" if results else "")
+        if len(task.targets) > MOST_DRAWN:
+            heading += "; not all are drawn"
     page.text(x, y, heading, 9.5, weight="bold")
     columns = (("miss", 62.0), ("of, mm", 74.0), ("joints 1, 2, °", 101.0))
     for head, column in columns:

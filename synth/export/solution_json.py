@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 SCHEMA = "synth.solution/1"
 _CENTRELINE_SPACING = 0.01  # m
+_MOST_OF_CENTRELINE = 1000  # points: of a link longer than 10 m they are farther apart
 # What is fixed or shaped: all pairs but 15 and 25, which change as the robot moves.
 _PAIRS = ("12", "13", "14", "23", "24", "34", "35", "45")
 
@@ -54,6 +55,7 @@ def solution_to_json(solution: Solution) -> dict[str, Any]:
             {"limit": each.limit, "amount": each.amount, "share": each.share, "sentence": each.sentence}
             for each in solution.releases
         ],
+        "notes": solution.notes,
         "alternatives": [_alternative(task, design) for design in designs[1:]],
     }
     return plain(content)
@@ -85,7 +87,8 @@ def _shape(task: Task, design: Design) -> dict[str, object]:
     """Return all that describes one shape of the robot, with the keys `_SHAPE_FIELDS`."""
     arm = design.arm
     squared = _squared_distances(arm)
-    centreline = arm.base.to_task(arm.shape.centreline(_CENTRELINE_SPACING) + arm.base_joint[1])
+    spacing = max(_CENTRELINE_SPACING, arm.shape.length / _MOST_OF_CENTRELINE)
+    centreline = arm.base.to_task(arm.shape.centreline(spacing) + arm.base_joint[1])
     values = (
         {pair: math.sqrt(s) for pair, s in squared.items()},
         squared,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -18,7 +19,8 @@ if TYPE_CHECKING:
 
 MARKERS = ("P1", "P2", "P3", "P4")
 LINK_END = "END"
-SPACING = 0.050  # m, of the points on the centreline
+SPACING = 0.050  # m, of the points on the centreline; of a very long link a multiple of it
+_MOST_STATIONS = 100  # more than that nobody holds a link to
 _LEAST_GAP = 0.010  # m; a point nearer to the link's end than this would only be mistaken for it
 
 
@@ -54,7 +56,7 @@ class Guide:
         hold: The same with joint 1 at an angle that it can hold: 0 within its limits, or else the
             middle of its range. This is what the operator measures against.
         stations: Arc lengths s from P2 of the points on the centreline, shape (k,), m: multiples of
-            50 mm, and the link's end.
+            50 mm, 100 at most, and the link's end.
         link: The shape of the link, with its length, smallest bend radius and total bend.
         tolerance: How precisely axis 2 must stand.
     """
@@ -121,5 +123,6 @@ def hold_angle(limits: Interval) -> float:
 
 def _stations(length: float) -> FloatArray:
     """Return the arc lengths of the points on a centreline of a length, m; the last one is its end."""
-    count = int(np.floor((length - _LEAST_GAP) / SPACING))
-    return np.append(SPACING * np.arange(1, count + 1), length)
+    spacing = SPACING * max(1, math.ceil(length / (SPACING * _MOST_STATIONS)))
+    count = int(np.floor((length - _LEAST_GAP) / spacing))
+    return np.append(spacing * np.arange(1, count + 1), length)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.guide.guide import make_guide
+from synth.guide.guide import SPACING, make_guide
 from synth.robot import MOST_CLEARANCE
 from synth.synthesis import motions
 
@@ -48,6 +48,7 @@ def summary_text(solution: Solution) -> str:
     if solution.bound is not None and solution.bound.sentence not in solution.reasons:
         bullets.append(solution.bound.sentence)
     bullets += [f"{release.sentence} would do" for release in solution.releases]
+    bullets += solution.notes
     starts = "1 start" if solution.starts == 1 else f"{solution.starts} starts"
     bullets.append(f"seed {solution.seed}, {starts}, {solution.time.total:.2f} s")
     return "\n".join([headline, "=" * min(len(headline), 79), *(f"• {bullet}" for bullet in bullets)])
@@ -71,7 +72,7 @@ def guide_text(guide: Guide | None, solution: Solution) -> str:
         f"{name:<5}" + "".join(f"{1e3 * value:z10.1f}" for value in point)[1:]
         for name, point in guide.points(guide.hold).items()
     ]
-    lines = [hold_sentence(guide), "Points in the task frame, mm:", "", *rows, "", axis_sentence(guide)]
+    lines = [hold_sentence(guide), points_sentence(guide), "", *rows, "", axis_sentence(guide)]
     return "\n".join([summary, "", *lines, *tolerance_sentences(guide)])
 
 
@@ -98,6 +99,14 @@ def solution_text(solution: Solution, *, alternatives: bool = False) -> str:
 def hold_sentence(guide: Guide) -> str:
     """Return what to do with joint 1 while the link is bent."""
     return f"Set joint 1 to {math.degrees(guide.hold.joint1):z.1f} deg and hold it there."
+
+
+def points_sentence(guide: Guide) -> str:
+    """Return what the table of points holds; of a very long link not every 50 mm."""
+    spacing = float(guide.stations[0])
+    if len(guide.stations) < 2 or spacing < 1.5 * SPACING:
+        return "Points in the task frame, mm:"
+    return f"Points in the task frame, mm, on the link every {1e3 * spacing:.0f} mm:"
 
 
 def axis_sentence(guide: Guide) -> str:

@@ -3,7 +3,7 @@
 from synth.robot.arc_chains import ArcChains
 from synth.robot.arm import Arm, JointBranches
 from synth.robot.base import BasePose
-from synth.robot.clearance import CLEAR, MOST_CLEARANCE, ArmBody
+from synth.robot.clearance import MOST_CLEARANCE, ArmBody
 from synth.robot.end_pose import ANYWHERE, PoseMiss, pose_miss
 from synth.robot.hardware import Interval, JointLimits, MalleableLink, RigidLink, Robot
 from synth.robot.kinematics import Kinematics
@@ -17,7 +17,6 @@ from synth.robot.workspace import SurfaceMesh, Workspace
 
 __all__ = [
     "ANYWHERE",
-    "CLEAR",
     "MOST_CLEARANCE",
     "PRESETS",
     "ArcChains",

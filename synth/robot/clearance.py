@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from synth.geometry import Solid
     from synth.robot.arm import Arm
 
-_TOLERANCE = 2e-5  # m, by which a stated clearance may be less than the true one
-# A bound of no less than this, m, is of what is clear: rounding aside, nothing overlaps.
-CLEAR = -_TOLERANCE - 2e-6
+# By how much a stated clearance may be less than the true one, m, for an arm of up to two metres; for a
+# longer one in proportion, or a bound for an arm as long as a street takes minutes.
+_TOLERANCE = 2e-5
 MOST_CLEARANCE = 0.1  # m; a clearance beyond is stated as this much
 _SELF_CEILING = 0.02  # m, likewise for what the arm keeps from itself
 _ROUNDING = 2e-6  # m
@@ -52,6 +52,16 @@ class ArmBody:
     """
 
     arm: Arm
+
+    @property
+    def tolerance(self) -> float:
+        """By how much a clearance stated here may be less than the true one, m."""
+        return _TOLERANCE * max(1.0, 0.5 * (self.arm.shape.length + self.rod_length))
+
+    @property
+    def clear(self) -> float:
+        """A bound of no less than this, m, is of what is clear: rounding aside, nothing overlaps."""
+        return -self.tolerance - _ROUNDING
 
     @property
     def tube_radius(self) -> float:
@@ -188,8 +198,8 @@ class ArmBody:
         sides: list[_Side] = [(-column, room - column, np.full(1, 2.0)), (0.0, room, 1.0)]
         return float(self._least(distance, sides, 2.0 * self.tube_radius, _SELF_CEILING, -math.inf)[0])
 
-    @staticmethod
     def _least(
+        self,
         distance: Callable[[NDArray[np.intp], FloatArray], FloatArray],
         sides: Sequence[_Side],
         radii: float,
@@ -201,7 +211,7 @@ class ArmBody:
         lower, upper, rates = (
             np.stack([np.broadcast_to(side[k], count) for side in sides], axis=-1) for k in range(3)
         )
-        least, _ = least_values(distance, lower, upper, rates, _TOLERANCE, radii + ceiling, radii + floor)
+        least, _ = least_values(distance, lower, upper, rates, self.tolerance, radii + ceiling, radii + floor)
         return least - radii
 
 

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.robot import Arm
+    from synth.synthesis.watch import Watch
     from synth.task import Task
 
 # That the nonlinear program knows all at once.
@@ -50,7 +51,7 @@ def part_of(task: Task, seed: int) -> Task:
     return replace(part, objective=Objective.LEAST_SQUARES)
 
 
-def ranked(task: Task, arms: Sequence[Arm], seed: int) -> list[Arm]:
+def ranked(task: Task, arms: Sequence[Arm], seed: int, watch: Watch) -> list[Arm]:
     """Return arms that were found for a part of the targets, best for a larger part first.
 
     A part may say nothing of where the dead zone of joint 1 should be. So where an arm misses targets, one
@@ -60,12 +61,16 @@ def ranked(task: Task, arms: Sequence[Arm], seed: int) -> list[Arm]:
         task: The task with all its targets.
         arms: The arms in shapes of equal arcs, the best for the part first.
         seed: The same larger part for the same seed.
+        watch: When it is up, the other arms are left out.
     """
     some = _random_part(task, _SAMPLE, seed)
     missing: list[tuple[float, Arm]] = []
-    reaching = []
+    reaching: list[Arm] = []
     for arm in arms:
-        for candidate in as_it_is_and_turned(some, arm):
+        if (reaching or missing) and watch.is_up():
+            break
+        watch.tell(phase="looking at more targets")
+        for candidate in as_it_is_and_turned(some, arm, watch):
             relative = _relative_misses(some, candidate)
             if np.all(relative <= np.sqrt(some.weights)):
                 reaching.append(candidate)
@@ -81,7 +86,7 @@ def _random_part(task: Task, count: int, seed: int) -> Task:
     return replace(task, targets=task.table.take(np.sort(chosen)))
 
 
-def improved(task: Task, arm: Arm) -> Arm:
+def improved(task: Task, arm: Arm, watch: Watch) -> Arm:
     """Return an arm after Gauss-Newton steps on all targets, for the sum of their squared misses.
 
     The steps know the limits of the link and of the joints, but neither floor nor obstacles.
@@ -89,31 +94,36 @@ def improved(task: Task, arm: Arm) -> Arm:
     Args:
         task: The task with all its targets.
         arm: The robot in a shape of equal arcs, near the best for a part of the targets.
+        watch: When it is up, no more steps are taken.
     """
     squares = replace(task, objective=Objective.LEAST_SQUARES)
     for count, steps in ((_SAMPLE, _STEPS), (len(task.targets), _STEPS_WITH_ALL)):
+        if watch.is_up():
+            break
+        watch.tell(phase="improving for all targets")
         some = _random_part(squares, count, 0)
         refined = refine(some, Population.of(arm), iterations=steps)
         arm = refined.population.arm(0, task.base)
     return arm
 
 
-def as_it_is_and_turned(task: Task, arm: Arm) -> Iterator[Arm]:
+def as_it_is_and_turned(task: Task, arm: Arm, watch: Watch) -> Iterator[Arm]:
     """Yield an arm and, if it misses a target, another that is turned about axis 1.
 
     Args:
         task: The task.
         arm: An arm that was found for a part of its targets.
+        watch: Ends it before the other one.
     """
     yield arm
-    if np.all(_relative_misses(task, arm) <= np.sqrt(task.weights)):
+    if watch.is_up() or np.all(_relative_misses(task, arm) <= np.sqrt(task.weights)):
         return
-    turned = _with_joint_1_clear(task, arm)
+    turned = _with_joint_1_clear(task, arm, watch)
     if turned is not None:
         yield turned
 
 
-def _with_joint_1_clear(task: Task, arm: Arm) -> Arm | None:
+def _with_joint_1_clear(task: Task, arm: Arm, watch: Watch) -> Arm | None:
     """Return an arm of about the same workspace that has the dead zone of joint 1 where no target is.
 
     Returns:
@@ -121,7 +131,7 @@ def _with_joint_1_clear(task: Task, arm: Arm) -> Arm | None:
     """
     limits = task.robot.joint_limits
     around = replace(limits, base=Interval(-math.pi, math.pi))
-    free = improved(replace(task, robot=replace(task.robot, joint_limits=around)), arm)
+    free = improved(replace(task, robot=replace(task.robot, joint_limits=around)), arm, watch)
     nearest = Postures.nearest(Aims(task.positions, around), Population.of(free).kinematics)
     angles = np.sort(nearest.theta1[0])
     gaps = np.diff(angles, append=angles[0] + 2.0 * math.pi)
@@ -137,10 +147,10 @@ def _with_joint_1_clear(task: Task, arm: Arm) -> Arm | None:
     if shape is None:
         return None
     # The link's end has the same axis 2; what joint 2 needs, too, the steps see to.
-    return improved(task, in_equal_arcs(replace(free, robot=task.robot, shape=shape)))
+    return improved(task, in_equal_arcs(replace(free, robot=task.robot, shape=shape)), watch)
 
 
-def levelled(task: Task, arm: Arm) -> Arm:
+def levelled(task: Task, arm: Arm, watch: Watch) -> Arm:
     """Return an arm whose worst miss over all targets is less, by Lawson's weights.
 
     A weighted sum of squares whose weights are multiplied by the misses again and again tends to the least
@@ -150,12 +160,16 @@ def levelled(task: Task, arm: Arm) -> Arm:
     Args:
         task: The task with all its targets.
         arm: The robot in a shape near the best, of equal arcs.
+        watch: When it is up, no more steps are taken.
     """
     best, least = arm, _relative_misses(task, arm)
     worst = task.table.take(np.sort(np.argsort(-least, kind="stable")[:_SAMPLE]))
     some = replace(task, targets=worst, objective=Objective.LEAST_SQUARES)
     share = np.full(len(worst), 1.0)
     for _ in range(_LAWSON_STEPS):
+        if watch.is_up():
+            break
+        watch.tell(phase="levelling the misses")
         relative = _relative_misses(some, arm)
         share = np.maximum(share * relative / relative.max(), _LEAST_SHARE)
         weighted = replace(some, targets=replace(worst, weights=worst.weights * share))

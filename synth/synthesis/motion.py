@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import FloatArray, frozen
-from synth.robot import CLEAR, ArmBody, turned
+from synth.robot import ArmBody, turned
 from synth.synthesis.solution import joints_reaching
 
 if TYPE_CHECKING:
@@ -147,7 +147,7 @@ class _Room:
         least = body.from_obstacles(start, self._solids, end=end).min(axis=(1, 2), initial=np.inf)
         itself = body.rod_from_tube(start[:, 1], end[:, 1])
         over_floor = self._over_floor(start[:, 1], end[:, 1])
-        return np.asarray(np.minimum(np.minimum(least, itself), over_floor) >= CLEAR)
+        return np.asarray(np.minimum(np.minimum(least, itself), over_floor) >= body.clear)
 
     def _over_floor(self, start: FloatArray, end: FloatArray) -> FloatArray:
         """Return how far the rod stays over the floor as theta2 goes from start to end, shape (n,), m.

@@ -8,25 +8,23 @@ certain to do; that a smaller one would not is not certain, nor that a limit tha
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.geometry import Box
-from synth.robot import BasePose, Interval
+from synth.robot import BasePose
+from synth.synthesis.relaxed_limits import limits_of, without_limits
 from synth.synthesis.solution import Release
 from synth.synthesis.solve import follow
 from synth.synthesis.verification import verify
 from synth.synthesis.watch import Watch
-from synth.task import Obstacle
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Sequence
 
     from synth.arrays import FloatArray
-    from synth.geometry import Solid
-    from synth.robot import MalleableLink
+    from synth.synthesis.relaxed_limits import Limit
     from synth.synthesis.solution import Design, Solution
     from synth.synthesis.watch import Progress
     from synth.task import Task
@@ -38,17 +36,6 @@ _NOTHING = 1e-6  # of a limit
 _HALVINGS = 6
 _BASE_STEPS = 12
 _FARTHEST_BASE = 1.0  # m
-
-
-@dataclass(frozen=True)
-class _Limit:
-    """A limit that can be relaxed: how far at most, and how."""
-
-    name: str
-    scale: float
-    most: float
-    relaxed: Callable[[float], Task]
-    sentence: Callable[[float], str]
 
 
 def explain(
@@ -68,34 +55,67 @@ def explain(
 
     Returns:
         The same with `releases`, one for each limit that does alone, the least change first, the base
-        last. None may mean that several limits block together. Should a shape turn up that meets the
-        task as it is, the solution with this shape.
+        last. Where there are none, `notes` says whether all of them together would do; if the time was up,
+        how far the search got. Should a shape turn up that meets the task as it is, the solution with
+        this shape.
     """
     if solution.found:
         return solution
     watch = Watch(time_limit, stop=stop, report=progress)
-    found = []
-    for limit in _limits(solution.task):
+    found, limits = [], tuple(limits_of(solution.task))
+    looked_at = []
+    for limit in limits:
+        watch.tell(phase=f"relaxing: {limit.name}")
         if watch.is_up():
             break
-        watch.tell(phase=f"relaxing: {limit.name}")
         release = _released(limit, solution, watch)
         if release is not None and release.share < _NOTHING:
             return follow(solution.task, [release.design], seed=solution.seed, watch=watch.aside())
         if release is not None:
             found.append(release)
+        if not watch.is_up():
+            looked_at.append(limit.name)
     found.sort(key=lambda release: release.share)
     watch.tell(phase="moving the base")
     moved = None if watch.is_up() else _base_moved(solution, watch)
-    return replace(solution, releases=tuple(found if moved is None else [*found, moved]))
+    releases = tuple(found if moved is None else [*found, moved])
+    watch.tell(phase="relaxing all limits together")
+    notes = [] if releases or watch.is_up() else [_why_none_does(solution, watch)]
+    if watch.interrupted:
+        notes = [_how_far(looked_at, [limit.name for limit in limits])]
+    return replace(solution, releases=releases, notes=(*solution.notes, *notes))
 
 
-def _released(limit: _Limit, solution: Solution, watch: Watch) -> Release | None:
+def _how_far(looked_at: Sequence[str], names: Sequence[str]) -> str:
+    """Return a sentence about a search for releases that ended early."""
+    done = f"{len(looked_at)} of {len(names)} limits were looked at in full"
+    listed = f" ({', '.join(dict.fromkeys(looked_at))})" if looked_at else ""
+    return f"the search for what would release the task was stopped early: {done}{listed}; others may do, too"
+
+
+def _why_none_does(solution: Solution, watch: Watch) -> str:
+    """Return a sentence where no single change does: do several together, or does the surface not fit?"""
+    none = "neither one limit relaxed alone nor another place of the base was found that would do"
+    free = follow(without_limits(solution.task), solution.designs, starts=_RELAXED[0][1], watch=watch.aside())
+    if not free.designs:
+        return none
+    if free.found:
+        return f"{none}; with all limits relaxed together the task is met, so several of them block it"
+    # Rounded up: so near a surface was found to pass.
+    nearest = math.ceil(1e5 * float(free.best.verification.misses.max())) / 1e2
+    return (
+        f"{none}, nor all limits relaxed together: the workspace of an arm of two joints is one surface of "
+        f"revolution about axis 1, and none was found, with this rigid link, that passes through all the "
+        f"targets; the nearest misses one by {nearest:.2f} mm"
+    )
+
+
+def _released(limit: Limit, solution: Solution, watch: Watch) -> Release | None:
     """Relax one limit more and more, then tighten it: as far as a shape allows, then as shapes follow."""
     for share, starts in _RELAXED:
         most = share * limit.most
         designs = follow(limit.relaxed(most), solution.designs, starts=starts, watch=watch.aside()).designs
-        needs = [_needed(limit, design, most) for design in designs]
+        needs = [_needed(limit, design, most, watch) for design in designs]
         if needs and min(needs) < math.inf:
             break
     else:
@@ -119,7 +139,7 @@ def _released(limit: _Limit, solution: Solution, watch: Watch) -> Release | None
     )
 
 
-def _needed(limit: _Limit, design: Design, most: float) -> float:
+def _needed(limit: Limit, design: Design, most: float, watch: Watch) -> float:
     """Return by how much a limit has to give way for one shape, infinite if that does not help it."""
     if not design.verification.found:
         return math.inf
@@ -131,89 +151,13 @@ def _needed(limit: _Limit, design: Design, most: float) -> float:
     if does(0.0):
         return 0.0
     too_little, enough = 0.0, most
-    while enough - too_little > 0.1 * _RESOLUTION * enough:
+    while enough - too_little > 0.1 * _RESOLUTION * enough and not watch.is_up():
         amount = 0.5 * (too_little + enough)
         if does(amount):
             enough = amount
         else:
             too_little = amount
     return enough
-
-
-def _limits(task: Task) -> Iterator[_Limit]:
-    """Yield the limits of a task and its hardware, each to be relaxed on its own."""
-    robot, link, limits = task.robot, task.robot.link, task.robot.joint_limits
-
-    def with_link(changed: MalleableLink) -> Task:
-        return replace(task, robot=replace(robot, link=changed))
-
-    low, high = link.length.lower, link.length.upper
-    yield _Limit(
-        "link length", high, high,
-        lambda more: with_link(replace(link, length=Interval(low, high + more))),
-        lambda more: f"a link {1e3 * more:.1f} mm longer, up to {1e3 * (high + more):.1f} mm",
-    )  # fmt: skip
-    yield _Limit(
-        "link length", low, 0.6 * low,
-        lambda less: with_link(replace(link, length=Interval(low - less, high))),
-        lambda less: f"a link {1e3 * less:.1f} mm shorter, down to {1e3 * (low - less):.1f} mm",
-    )  # fmt: skip
-    radius = link.min_bend_radius
-    yield _Limit(
-        "bend radius", radius, 0.6 * radius,
-        lambda less: with_link(replace(link, min_bend_radius=radius - less)),
-        lambda less: f"a bend radius {1e3 * less:.1f} mm smaller, down to {1e3 * (radius - less):.1f} mm",
-    )  # fmt: skip
-    bend = link.max_total_bend
-    if math.isfinite(bend):
-        yield _Limit(
-            "total bend", bend, 2.0 * math.pi,
-            lambda more: with_link(replace(link, max_total_bend=bend + more)),
-            lambda more: f"{math.degrees(more):.1f} deg more of bend in all, "
-            f"up to {math.degrees(bend + more):.1f} deg",
-        )  # fmt: skip
-    for name, key, interval in (("joint 1", "base", limits.base), ("joint 2", "second", limits.second)):
-        room = math.pi - 0.5 * (interval.upper - interval.lower)
-        if room > 0.0:
-            yield _Limit(
-                name, math.pi, room,
-                lambda more, key=key, interval=interval: replace(  # type: ignore[misc]
-                    task, robot=replace(robot, joint_limits=replace(
-                        limits, **{key: Interval(interval.lower - more, interval.upper + more)}))),
-                lambda more, name=name: f"{math.degrees(more):.1f} deg more of {name} at each end",  # type: ignore[misc]
-            )  # fmt: skip
-    if task.floor is not None:
-        floor, depth = task.floor, robot.d12 + high
-        yield _Limit(
-            "floor", high, depth,
-            lambda lower: replace(task, floor=floor - lower),
-            lambda lower: f"a floor {1e3 * lower:.1f} mm lower",
-        )  # fmt: skip
-    for index, obstacle in enumerate(task.obstacles):
-        most = -_deepest(obstacle.solid)
-        yield _Limit(
-            f"obstacle: {obstacle.name}", high, most,
-            lambda less, index=index: _with_less_of(task, index, less),  # type: ignore[misc]
-            lambda less, name=obstacle.name: f"{name} {1e3 * less:.1f} mm smaller all round",  # type: ignore[misc]
-        )  # fmt: skip
-
-
-def _deepest(solid: Solid) -> float:
-    """Return the least signed distance from a solid, m: how much it can shrink."""
-    return -0.5 * float(solid.size.min()) if isinstance(solid, Box) else -solid.radius
-
-
-def _with_less_of(task: Task, index: int, less: float) -> Task:
-    """Return the task with an obstacle shrunk all round; one that has shrunk to nothing is gone."""
-    obstacle = task.obstacles[index]
-    solid, kept = obstacle.solid, list(task.obstacles)
-    if less >= -_deepest(solid):
-        del kept[index]
-    elif isinstance(solid, Box):
-        kept[index] = Obstacle(obstacle.name, replace(solid, size=solid.size - 2.0 * less))
-    else:
-        kept[index] = Obstacle(obstacle.name, replace(solid, radius=solid.radius - less))
-    return replace(task, obstacles=tuple(kept))
 
 
 def _base_moved(solution: Solution, watch: Watch) -> Release | None:
@@ -242,6 +186,8 @@ def _base_moved(solution: Solution, watch: Watch) -> Release | None:
         return None
     too_little, enough = 0.0, 1.0
     for _ in range(_HALVINGS):
+        if watch.is_up():
+            break
         part = 0.5 * (too_little + enough)
         followed = follow(moved(part * shift), designs, watch=watch.aside())
         if followed.found:

@@ -82,12 +82,12 @@ def starts(task: Task, seed: int, *, quick: bool = False, watch: Watch | None = 
     Yields:
         Start points; none where no random shape respects the limits and the floor.
     """
-    rng = np.random.default_rng([seed, 1])
-    for start in _starts(thinned(task, _MOST_TARGETS, rng), seed, rng, watch or Watch(), quick=quick):
+    rng, watch = np.random.default_rng([seed, 1]), watch or Watch()
+    for start in _starts(thinned(task, _MOST_TARGETS, rng), seed, rng, watch, quick=quick):
         if len(start.joints) == len(task.targets):
             yield start
             continue
-        for arm in as_it_is_and_turned(task, start.arm):
+        for arm in as_it_is_and_turned(task, start.arm, watch):
             joints, misses = arm.closest_joints(task.table.positions)
             yield Start(arm, joints, cost=float(relative_weights(task) @ misses**2))
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+import traceback
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.errors import in_a_line
 from synth.robot import ANYWHERE, Interval, links_to_poses
 from synth.synthesis.certificate import Certifier
 from synth.synthesis.impossibility import why_impossible
@@ -54,6 +57,18 @@ class Search:
     starts_found: int = 0  # since a shape was found, that start included
     complete: bool = False  # a proof may be cut short all the same
     bound: Bound | None = None
+    broke_off: Exception | None = None
+    notes: list[str] = field(default_factory=list)
+
+    @contextmanager
+    def kept(self) -> Iterator[None]:
+        """Keep what was found so far where something breaks that nobody foresaw."""
+        try:
+            yield
+        except Exception as error:
+            if error is self.watch.raised:  # not ours
+                raise
+            self.broke_off = self.broke_off or error
 
     @cached_property
     def polishing(self) -> Polishing:
@@ -148,19 +163,34 @@ class Search:
 
     def solution(self) -> Solution:
         """Rank what was found and say what it is worth."""
-        found = [*self.polishing.designs, *self._changing_little()]
-        designs = self._for_all_targets(best_of(self.part, found))
-        status, reasons = self._verdict(designs)
+        designs: tuple[Design, ...] = ()
+        with self.kept():
+            found = [*self.polishing.designs, *self._changing_little()]
+            designs = self._for_all_targets(best_of(self.part, found))
+        if self.broke_off is not None and not designs:
+            with self.kept():
+                best = best_of(self.part, self.polishing.designs)[:1]
+                checked = [Design(one.arm, verify(self.task, one.arm)) for one in best]
+                designs = tuple(one for one in checked if one.verification.possible)
+        status: Status = Status.FAILED
+        reasons: tuple[str, ...] = ()
+        with self.kept():
+            status, reasons = self._verdict(designs)
+        words = status.sentence
+        with self.kept():
+            words = message(self.task, status, designs, (*self._why_broken(), *reasons))
         return Solution(
             self.task,
             status,
-            message(self.task, status, designs, reasons),
-            reasons,
+            words,
+            (*self._why_broken(), *reasons),
             self.seed,
             designs,
             self.starts,
             self.watch.timing(),
             self._bound_for(designs),
+            notes=tuple(self.notes),
+            breakdown="".join(traceback.format_exception(self.broke_off)) if self.broke_off else "",
         )
 
     @property
@@ -176,10 +206,15 @@ class Search:
                 return
             yield start
 
+    def _why_broken(self) -> tuple[str, ...]:
+        return () if self.broke_off is None else (f"the search broke off: {in_a_line(self.broke_off)}",)
+
     def _verdict(self, designs: tuple[Design, ...]) -> tuple[Status, tuple[str, ...]]:
         """Return how the search ended, and why it found no more, as far as that is known."""
         if designs and designs[0].verification.found:
             return Status.FOUND, ()
+        if self.broke_off is not None:
+            return Status.FAILED, ()
         if self._impossible:
             return Status.PROVEN_IMPOSSIBLE, self._impossible
         if self.bound is not None and self.bound.excludes:
@@ -219,13 +254,16 @@ class Search:
         if self.part is self.task:
             return designs
         with self.watch.on("solving"):
-            arms = ranked(self.task, [design.arm for design in designs], self.seed)
-        whole = []
+            arms = ranked(self.task, [design.arm for design in designs], self.seed, self.watch)
+        whole: list[Design] = []
         for found in arms[: max(1, _VERIFIED_AT_MOST // len(self.task.targets))]:
+            if whole and self.watch.is_up():
+                break
             with self.watch.on("solving"):
-                arm = improved(self.task, found)
+                arm = improved(self.task, found, self.watch)
                 if self.task.objective is Objective.MINIMAX:
-                    arm = levelled(self.task, arm)
+                    arm = levelled(self.task, arm, self.watch)
+            self.watch.tell(phase="verifying with all targets")
             with self.watch.on("verifying"):
                 check = verify(self.task, arm)
                 # The steps know neither floor nor obstacles.

@@ -116,6 +116,8 @@ class Solution:
         bound: How much better than the best shape found any shape may be; None if that was not asked, or
             there is no proof for such a task.
         releases: What would release a task that was not met; empty before `explain` has looked.
+        notes: What else is to be said: what was left undone for lack of time, what `explain` found.
+        breakdown: The traceback of what broke off the search and nobody foresaw; empty mostly.
     """
 
     task: Task
@@ -128,6 +130,8 @@ class Solution:
     time: Timing
     bound: Bound | None = None
     releases: tuple[Release, ...] = ()
+    notes: tuple[str, ...] = ()
+    breakdown: str = ""
 
     @property
     def found(self) -> bool:

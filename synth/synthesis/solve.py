@@ -45,15 +45,17 @@ def solve(
         progress: Told of each step: of the search for start points, of each one polished, of the proof.
 
     Returns:
-        The solution, whatever was found; its status says what it is worth.
+        The solution, whatever was found; its status says what it is worth. Where something broke that nobody
+        foresaw, what was found before, and in `reasons` what broke.
     """
     watch = Watch(time_limit, stop=stop, report=progress)
     search = Search(task, part_of(task, seed), seed, watch, alternatives)
     near = warm_start.designs if warm_start is not None and warm_start.task.robot == task.robot else ()
-    if not search.follow(near):
-        search.run()
-    if prove:
-        search.prove()
+    with search.kept():
+        if not search.follow(near):
+            search.run()
+        if prove:
+            search.prove()
     return search.solution()
 
 
@@ -75,6 +77,7 @@ def follow(
         watch: Says when to end with what there is.
     """
     search = Search(task, part_of(task, seed), seed, watch or Watch())
-    if not search.follow(designs) and starts:
-        search.run(starts)
+    with search.kept():
+        if not search.follow(designs) and starts:
+            search.run(starts)
     return search.solution()

@@ -6,10 +6,12 @@ import math
 import time
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
+
+_T = TypeVar("_T")
 
 
 @dataclass(frozen=True)
@@ -60,6 +62,9 @@ class Watch:
         stop: Asked whether to stop; once it said yes, it is not asked again.
         report: Told how far the run is.
         clock: Returns the time, s.
+
+    Attributes:
+        raised: What `stop` or `report` raised, if they did: it is the caller's, and passes through all nets.
     """
 
     def __init__(
@@ -76,6 +81,7 @@ class Watch:
         self._spent = {"screening": 0.0, "solving": 0.0, "verifying": 0.0, "proving": 0.0}
         self._progress = Progress()
         self._interrupted = False
+        self.raised: BaseException | None = None
 
     @property
     def remaining(self) -> float:
@@ -90,14 +96,24 @@ class Watch:
     def is_up(self) -> bool:
         """Whether to end with what there is; it stays so."""
         if not self._interrupted:
-            self._interrupted = (self._stop is not None and self._stop()) or self.remaining <= 0.0
+            wish = self._stop is not None and self._users(self._stop)
+            self._interrupted = wish or self.remaining <= 0.0
         return self._interrupted
 
     def tell(self, **changes: Any) -> None:
         """Tell how far the run is: what has changed of the `Progress` told before, or that it is alive."""
         self._progress = replace(self._progress, **changes)
-        if self._report is not None:
-            self._report(self._progress)
+        report, now = self._report, self._progress
+        if report is not None:
+            self._users(lambda: report(now))
+
+    def _users(self, call: Callable[[], _T]) -> _T:
+        """Return what a function of the user returns, and remember what it raises."""
+        try:
+            return call()
+        except BaseException as error:
+            self.raised = error
+            raise
 
     @contextmanager
     def on(self, part: str) -> Iterator[None]:
