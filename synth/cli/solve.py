@@ -9,10 +9,11 @@ import click
 
 from synth.cli.exit_codes import ExitCode
 from synth.cli.session import interruptible, search_progress
+from synth.cli.terminal import show
 from synth.errors import SynthError
 from synth.export import prepare_directory, solution_to_json, write_files
 from synth.guide import solution_text
-from synth.synthesis import Status, explain, solve
+from synth.synthesis import Status, explain, showing, solve
 from synth.task import load_task
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ def solve_file(
     *,
     form: str,
     show_all: bool,
+    shape: int,
     seed: int,
     prove: bool,
     why: bool,
@@ -37,6 +39,7 @@ def solve_file(
         output: Directory for the files, or None.
         form: "text" or "json".
         show_all: Whether the text shows the alternative shapes.
+        shape: Which of the shapes is shown, counted from 1, the best.
         seed: Seed of the search.
         prove: Whether to prove how much better any shape may be.
         why: Whether to look for what would release a task that is not met.
@@ -55,10 +58,12 @@ def solve_file(
             )
             if why:
                 solution = explain(solution, stop=stop)
+        if shape != 1:
+            solution = showing(solution, shape)
         if form == "json":
             click.echo(json.dumps(solution_to_json(solution), indent=2, allow_nan=False))
         else:
-            click.echo(solution_text(solution, alternatives=show_all))
+            show(solution_text(solution, alternatives=show_all))
         for path in [] if output is None else write_files(solution, output):
             click.echo(f"wrote {path}", err=True)
     except SynthError as error:  # `solve` itself raises none: it returns what became of the search

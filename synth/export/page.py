@@ -27,12 +27,23 @@ class Page:
         style = {"ha": "left", "va": "baseline", **style}
         self.figure.text(x / WIDTH, 1.0 - y / HEIGHT, text, fontsize=size, **style)
 
-    def paragraph(self, x: float, y: float, text: str, width: int, **style: Any) -> float:
-        """Write lines of at most `width` characters; return where the next line goes."""
-        for line in textwrap.wrap(text, width, break_on_hyphens=False):
+    def paragraph(
+        self, x: float, y: float, text: str, width: int, *, most: int | None = None, pitch: float = _LINE, **style: Any
+    ) -> float:
+        """Write lines of at most `width` characters, no more than `most`; return where the next line goes."""
+        lines = textwrap.wrap(text, width, break_on_hyphens=False, max_lines=most, placeholder=" …")
+        for line in lines:
             self.text(x, y, line, **style)
-            y += _LINE
+            y += pitch
         return y
+
+    def band(self, x: float, y: float, width: float, height: float, colour: str) -> None:
+        """Fill a rectangle with its upper left corner at (x, y)."""
+        from matplotlib.patches import Rectangle  # noqa: PLC0415 - as heavy as the page that is drawn anyway
+
+        corner = (x / WIDTH, 1.0 - (y + height) / HEIGHT)
+        size = (width / WIDTH, height / HEIGHT)
+        self.figure.add_artist(Rectangle(corner, *size, facecolor=colour, transform=self.figure.transFigure))
 
     def axes(self, x: float, y: float, width: float, height: float) -> Axes:
         """Return axes with their upper left corner at (x, y)."""

@@ -1,17 +1,20 @@
 """The synthesis: screen, polish, verify; `solve` is its one verb."""
 
 from synth.synthesis.bound import Bound
+from synth.synthesis.forgiveness import Forgiveness, hand_forgiveness
 from synth.synthesis.motion import MOST_MOTIONS, Motion, motions
 from synth.synthesis.release import explain
 from synth.synthesis.search import Progress
 from synth.synthesis.solution import Design, NotFoundError, Release, Solution, Status, TargetResult, Timing
 from synth.synthesis.solve import solve
+from synth.synthesis.verdict import showing
 from synth.synthesis.verification import Verification, Violation, verify
 
 __all__ = [
     "MOST_MOTIONS",
     "Bound",
     "Design",
+    "Forgiveness",
     "Motion",
     "NotFoundError",
     "Progress",
@@ -23,7 +26,9 @@ __all__ = [
     "Verification",
     "Violation",
     "explain",
+    "hand_forgiveness",
     "motions",
+    "showing",
     "solve",
     "verify",
 ]

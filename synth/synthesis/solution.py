@@ -23,10 +23,16 @@ class Status(SentenceEnum):
     """How a synthesis ended."""
 
     FOUND = "found", "every target is within its tolerance"
-    BEST_EFFORT = "best_effort", "no shape was found that reaches every target; this is the nearest found"
+    BEST_EFFORT = "best_effort", "no shape was found that reaches every target"
     PROVEN_IMPOSSIBLE = "proven_impossible", "no shape of this robot can do the task"
-    LIMIT = "limit", "stopped before the search was complete; this is the best shape so far"
+    LIMIT = "limit", "stopped before the search was complete"
     FAILED = "failed", "the solver broke down"
+
+    def told(self, *, with_shape: bool) -> str:
+        """Return the sentence, with what the shape shown is, if there is one."""
+        if with_shape and self in (Status.BEST_EFFORT, Status.LIMIT):
+            return f"{self.sentence}; what follows is of the nearest shape found"
+        return self.sentence
 
 
 class NotFoundError(SynthError):
@@ -134,6 +140,7 @@ class Solution:
         bound: How much better than the best shape found any shape may be; None if that was not asked, or
             there is no proof for such a task.
         releases: What would release a task that was not met; empty before `explain` has looked.
+        shape: Which of the shapes, counted from the best, `designs` begins with; see `showing`.
     """
 
     task: Task
@@ -146,6 +153,13 @@ class Solution:
     time: Timing
     bound: Bound | None = None
     releases: tuple[Release, ...] = ()
+    shape: int = 1
+
+    @property
+    def shape_numbers(self) -> tuple[int, ...]:
+        """The number of each of `designs`, counted from the best."""
+        others = (number for number in range(1, len(self.designs) + 1) if number != self.shape)
+        return (self.shape, *others)
 
     @property
     def found(self) -> bool:
