@@ -53,8 +53,7 @@ def draw(page: Page, solution: Solution, scene: Scene, top: float) -> None:
         ("Side", SIDE, right, lower),
     ):
         across, up = view
-        axes = page.axes(x, y, sizes[across], sizes[up])
-        axes.set(xlim=limits[:, across], ylim=limits[:, up])
+        axes = page.axes(x, y, sizes[across], sizes[up], limits[:, view])
         page.text(x, y - 1.5, f"{title}: {names[across]} and {names[up]}, mm", 7.0, weight="bold")
         page.text(x + sizes[across], y - 1.5, f"1 : {scale:g}", 7.0, ha="right")
         draw_view(axes, scene, view, scale)
@@ -72,7 +71,7 @@ def draw(page: Page, solution: Solution, scene: Scene, top: float) -> None:
             else ""
         )
     )
-    page.paragraph(MARGIN, HEIGHT - 8.0, legend, 135, pitch=3.0, size=FONT_SIZE)
+    page.paragraph(MARGIN, HEIGHT - 8.0, legend, 152, pitch=3.0, size=FONT_SIZE)
 
 
 def _section(page: Page, solution: Solution, scene: Scene, square: tuple[float, float, float]) -> None:
@@ -86,8 +85,7 @@ def _section(page: Page, solution: Solution, scene: Scene, square: tuple[float, 
     corner = 0.5 * (lowest + highest - span)
     if scene.floor is not None:
         corner[1] = lowest[1] - 0.08 * span
-    axes = page.axes(x, y, side, side)
-    axes.set(xlim=(corner[0], corner[0] + span), ylim=(corner[1], corner[1] + span))
+    axes = page.axes(x, y, side, side, np.stack([corner, corner + span]))
     page.text(x, y - 1.5, "Section: ρ, z, mm", 7.0, weight="bold")
     base = np.degrees([limits.lower, limits.upper])
     page.text(x + side, y - 1.5, f"joint 1 {base[0]:z.0f}° to {base[1]:z.0f}°", 6.0, ha="right")

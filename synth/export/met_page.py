@@ -59,7 +59,7 @@ def _steps(page: Page, guide: Guide) -> float:
     y = _BODY + 5.0
     for number, step in enumerate(instructions(guide), start=1):
         page.text(_COLUMN, y, str(number), 7.0, weight="bold")
-        y = page.paragraph(_COLUMN + 4.0, y, step, 80, pitch=3.35, size=7.0) + 0.7
+        y = page.paragraph(_COLUMN + 4.0, y, step, 77, pitch=3.35, size=7.0) + 0.7
     return y
 
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 LINK, AXIS, TARGET, GHOST = "#0072B2", "#D55E00", "#000000", "#8C8C8C"
 # Which coordinates a view shows to the right and upwards: a third-angle projection.
 TOP, FRONT, SIDE = (0, 1), (0, 2), (1, 2)
-_LABEL = 20  # characters of an obstacle's name
+_LABEL = 24  # characters of an obstacle's name
 _POINTS_PER_MM = 72.0 / 25.4
 _AROUND = 120.0  # mm, how far obstacles are shown beyond the arm and its targets
 _OUTLINE = 72  # directions in which the outline of an obstacle is looked for
