@@ -124,7 +124,9 @@ def test_joint_1_is_held_at_zero_or_in_the_middle_of_its_range(limits, angle):
 def test_the_posture_to_hold_is_clear_of_obstacles_and_the_nearest_that_is():
     body = ArmBody(ARM)
     middle = body.tube(np.array([0.5 * ARM.shape.length]))
-    ball = BASE.to_task(BasePose(yaw=math.pi).to_task(middle))[0]  # in the way in the middle of joint 1's range
+    ball = BASE.to_task(BasePose(yaw=math.pi).to_task(middle))[
+        0
+    ]  # in the way in the middle of joint 1's range
     task = replace(TASK, obstacles=(Obstacle("ball", Capsule.sphere(ball, 0.08)),))
     posture = hold_posture(task, ARM)
     assert posture.clear
@@ -279,7 +281,9 @@ def test_an_error_of_the_size_that_is_told_loses_no_target(tolerance):
     shift = 1e-3 * float(re.search(r"within ([\d.]+) mm", told)[1])
     tilt = math.radians(float(re.search(r"([\d.]+) deg", told)[1]))
     assert worst_excess(task, ARM, np.zeros(3), tilt * tilts_across(ARM)) <= 1.0 + 1e-4
-    assert worst_excess(task, ARM, shift * directions(np.random.default_rng(1), 180), np.zeros(3)) <= 1.0 + 1e-9
+    assert (
+        worst_excess(task, ARM, shift * directions(np.random.default_rng(1), 180), np.zeros(3)) <= 1.0 + 1e-9
+    )
 
 
 def test_axis_2_is_told_as_elevation_and_heading():
@@ -289,7 +293,10 @@ def test_axis_2_is_told_as_elevation_and_heading():
     expected = [level * math.cos(hold.heading), level * math.sin(hold.heading), math.sin(hold.elevation)]
     np.testing.assert_allclose(u, expected, atol=1e-12)
     sentence = axis_sentence(GUIDE)
-    assert f"{abs(math.degrees(hold.elevation)):.1f} deg {'above' if u[2] > 0 else 'below'} horizontal" in sentence
+    assert (
+        f"{abs(math.degrees(hold.elevation)):.1f} deg {'above' if u[2] > 0 else 'below'} horizontal"
+        in sentence
+    )
     assert f"heading {math.degrees(hold.heading):.1f} deg" in sentence
     upright = replace(GUIDE, hold=replace(hold, axis_direction=[0.0, 0.0, -1.0]))
     assert "is vertical, P4 below P3" in axis_sentence(upright)
@@ -316,7 +323,9 @@ def test_a_tolerance_that_no_hand_holds_is_called_that():
 
 
 def test_a_default_tolerance_is_marked_as_such():
-    text = summary_text(replace(SOLUTION, **on(make_design(ARM, JOINTS, np.zeros((3, 3)), DEFAULT_TOLERANCE))))
+    text = summary_text(
+        replace(SOLUTION, **on(make_design(ARM, JOINTS, np.zeros((3, 3)), DEFAULT_TOLERANCE)))
+    )
     assert "of 1.000 mm, the default" in text
     assert "the default" not in summary_text(SOLUTION)
 
@@ -336,7 +345,9 @@ def test_proof_and_help_stand_below_the_headline_and_speak_of_the_shape_shown():
         reasons=(bound.sentence,), bound=bound, releases=(release,),
     )  # fmt: skip
     lines = summary_text(solution).splitlines()
-    assert lines[2].startswith("• proven: every shape misses some target by at least 20.000 mm; the worst miss of")
+    assert lines[2].startswith(
+        "• proven: every shape misses some target by at least 20.000 mm; the worst miss of"
+    )
     gap = float(re.search(r"within ([\d.]+) mm", lines[2])[1])
     assert worst - 20.0 <= gap < worst - 20.0 + 1.1e-3
     assert lines[3] == "• a floor 100.0 mm lower would do"
@@ -361,7 +372,9 @@ def test_another_shape_is_shown_on_request():
     assert solution_text(shown, alternatives=True).splitlines()[-1].startswith("  1  worst miss")
     assert showing(both, 1).shape_numbers == (1, 2)
     for number in (0, 3):
-        with pytest.raises(SynthError, match=f"there is no shape {number} to show: there are 2 distinct shapes"):
+        with pytest.raises(
+            SynthError, match=f"there is no shape {number} to show: there are 2 distinct shapes"
+        ):
             showing(both, number)
     with pytest.raises(SynthError, match="there is no shape of this task"):
         showing(NOTHING, 1)

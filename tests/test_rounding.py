@@ -34,7 +34,9 @@ def test_the_bound_that_was_stated_too_high():
     assert at_most(0.456912) == "at most 457.0 mm"
 
 
-@pytest.mark.parametrize(("length", "words"), [(0.0003, "0.3"), (0.0007, "0.7"), (0.002, "2.0"), (-1e-9, "-0.1")])
+@pytest.mark.parametrize(
+    ("length", "words"), [(0.0003, "0.3"), (0.0007, "0.7"), (0.002, "2.0"), (-1e-9, "-0.1")]
+)
 def test_a_number_of_the_file_is_that_number(length, words):
     assert rounded_down(length) == words
 

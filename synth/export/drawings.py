@@ -63,13 +63,10 @@ def draw(page: Page, solution: Solution, scene: Scene, top: float) -> None:
     if solution.designs and scene.hold is None:
         shape = "Dashed: the nearest shape found, at target 1; it misses, so do not bend the link to it. "
     obstacles = "Hatched crosswise: obstacles, not in the section. " if scene.obstacles else ""
-    legend = (
-        f"{shape}{obstacles}Dash-dotted: axes of the joints. Dot: target reached; cross: missed."
-        + (
-            " Section: ρ is the distance from axis 1; solid within the limits of joint 2, dashed beyond."
-            if solution.designs
-            else ""
-        )
+    legend = f"{shape}{obstacles}Dash-dotted: axes of the joints. Dot: target reached; cross: missed." + (
+        " Section: ρ is the distance from axis 1; solid within the limits of joint 2, dashed beyond."
+        if solution.designs
+        else ""
     )
     page.paragraph(MARGIN, HEIGHT - 8.0, legend, 152, pitch=3.0, size=FONT_SIZE)
 

@@ -51,7 +51,9 @@ def _why(solution: Solution) -> list[str]:
 
 def _help(solution: Solution) -> list[str]:
     told = [f"{release.sentence} would do." for release in solution.releases[:_MOST_RELEASES]]
-    return told or ["`synth solve --why` looks for one limit that, if it gave way, would let the task be met."]
+    return told or [
+        "`synth solve --why` looks for one limit that, if it gave way, would let the task be met."
+    ]
 
 
 def _list(page: Page, y: float, heading: str, lines: Sequence[str]) -> float:

@@ -1,6 +1,6 @@
 """Names as long as they may be on paper: cut in the middle, since names mostly differ at an end."""
 
-_GAP = "…"
+_GAP = "..."
 
 
 def shortened(name: str, most: int) -> str:
@@ -8,7 +8,7 @@ def shortened(name: str, most: int) -> str:
 
     Args:
         name: A name of any length; line breaks and runs of blanks count as one blank.
-        most: Characters there is room for, 3 at least.
+        most: Characters there is room for, 5 at least.
     """
     line = " ".join(name.split())
     if len(line) <= most:

@@ -35,10 +35,18 @@ class Page:
         self.figure.text(x / WIDTH, 1.0 - y / HEIGHT, text, fontsize=size, **style)
 
     def paragraph(
-        self, x: float, y: float, text: str, width: int, *, most: int | None = None, pitch: float = _LINE, **style: Any
+        self,
+        x: float,
+        y: float,
+        text: str,
+        width: int,
+        *,
+        most: int | None = None,
+        pitch: float = _LINE,
+        **style: Any,
     ) -> float:
         """Write lines of at most `width` characters, no more than `most`; return where the next line goes."""
-        lines = textwrap.wrap(text, width, break_on_hyphens=False, max_lines=most, placeholder=" …")
+        lines = textwrap.wrap(text, width, break_on_hyphens=False, max_lines=most, placeholder=" ...")
         for line in lines:
             self.text(x, y, line, **style)
             y += pitch
@@ -74,7 +82,9 @@ class Page:
         grid = [[(at, bottom), (at, top)] for at in across] + [[(left, at), (right, at)] for at in up]
         axes.add_collection(LineCollection(grid, colors="#E8E8E8", linewidths=0.4, zorder=-2), autolim=False)
         frame = [(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)]
-        axes.add_collection(LineCollection([frame], colors="black", linewidths=0.6, zorder=10, clip_on=False), autolim=False)
+        axes.add_collection(
+            LineCollection([frame], colors="black", linewidths=0.6, zorder=10, clip_on=False), autolim=False
+        )
         for at in across:
             where = x + width * (at - left) / (right - left)
             self.text(where, y + height + 3.4, f"{at:g}", FONT_SIZE, ha="center")

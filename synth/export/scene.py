@@ -188,7 +188,15 @@ def _draw_floor(axes: Axes, height: float) -> None:
 def _draw_obstacle(axes: Axes, name: str, solid: Solid, view: tuple[int, int], labels: Labels) -> None:
     """Draw the outline of a convex solid, hatched, and name it in the middle of what is seen of it."""
     outline = 1e3 * solid_outline(solid, view)
-    axes.fill(*outline.T, facecolor="#F4EFE0", edgecolor="#7A6A3A", hatch="xxx", linewidth=0.7, alpha=0.75, zorder=0.5)
+    axes.fill(
+        *outline.T,
+        facecolor="#F4EFE0",
+        edgecolor="#7A6A3A",
+        hatch="xxx",
+        linewidth=0.7,
+        alpha=0.75,
+        zorder=0.5,
+    )
     frame = np.array([axes.get_xlim(), axes.get_ylim()])
     labels.add(shortened(name, _LABEL), np.clip(outline, frame[:, 0], frame[:, 1]).mean(axis=0))
 

@@ -45,7 +45,7 @@ def draw_sheet(solution: Solution, guide: Guide | None, file_format: str = "pdf"
         mpl.rcdefaults()  # the user's own style is for the user's own plots
         mpl.rc("font", family="DejaVu Sans")
         mpl.rc("text", usetex=False, parse_math=False)  # a $ in a name is a dollar
-        # Text that can be searched and copied, glyph by glyph: to cut a whole font to size takes a second.
+        # Glyph by glyph, since to cut a whole font to size takes a second; text in Latin letters can be searched.
         mpl.rc("pdf", fonttype=3)
         mpl.rc("hatch", linewidth=0.4)
         # A name in a script that the font lacks prints as boxes; that is no reason to talk of fonts.

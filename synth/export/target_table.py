@@ -69,6 +69,12 @@ def target_table(page: Page, x: float, y: float, solution: Solution) -> float:
                 page.text(x + 108.0, line, told, 7.5, ha="right")
     bottom = y + _PITCH * (len(listed) + 1) + 0.6
     if any(task.targets[index].tolerance == DEFAULT_TOLERANCE for index in listed):
-        page.text(x + 6.0, bottom, "* the default: the task states none of its own, or this one", 6.5, color="#555555")
+        page.text(
+            x + 6.0,
+            bottom,
+            "* the default: the task states none of its own, or this one",
+            6.5,
+            color="#555555",
+        )
         bottom += _PITCH
     return bottom

@@ -73,7 +73,8 @@ class CategoryDistances:
             name, distance, unit = from_each.pop(category)
             own = f"{name} to {rounded_up(distance, unit)} {unit.symbol}"
         others = (
-            f"{unit.of(distance):.1f} {unit.symbol} from {name}" for name, distance, unit in from_each.values()
+            f"{unit.of(distance):.1f} {unit.symbol} from {name}"
+            for name, distance, unit in from_each.values()
         )
         return f"{own}; {', '.join(others)}"
 

@@ -43,7 +43,9 @@ def instructions(guide: Guide) -> tuple[str, ...]:
 
 def cut_sentence(d35: float, d45: float) -> str:
     """Return to what the rigid link is to be cut, where the synthesis chose it."""
-    return f"Cut the rigid link to d35 = {1e3 * d35:.1f} mm and d45 = {1e3 * d45:.1f} mm, from P3 and P4 to P5."
+    return (
+        f"Cut the rigid link to d35 = {1e3 * d35:.1f} mm and d45 = {1e3 * d45:.1f} mm, from P3 and P4 to P5."
+    )
 
 
 def base_sentence(base: BasePose) -> str:

@@ -43,7 +43,9 @@ def summary_text(solution: Solution, guide: Guide | None = None) -> str:
     if solution.designs:
         lines += _target_lines(solution.targets)
     else:
-        lines.append(_bullet(f"{len(solution.task.targets)} targets asked for, none reached: there is no shape"))
+        lines.append(
+            _bullet(f"{len(solution.task.targets)} targets asked for, none reached: there is no shape")
+        )
     bullets = [] if guide is None or not guide.met else _shape_bullets(guide)
     if len(solution.designs) > 1:
         best = ", the best" if solution.shape == 1 else ""

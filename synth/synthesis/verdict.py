@@ -39,7 +39,11 @@ def showing(solution: Solution, number: int) -> Solution:
     """
     designs, count = solution.designs, len(solution.designs)
     if not 1 <= number <= count:
-        are = "is no shape" if not count else f"{'is 1 shape' if count == 1 else f'are {count} distinct shapes'}"
+        are = (
+            "is no shape"
+            if not count
+            else f"{'is 1 shape' if count == 1 else f'are {count} distinct shapes'}"
+        )
         raise SynthError(f"there is no shape {number} to show: there {are} of this task")
     ordered = (designs[number - 1], *designs[: number - 1], *designs[number:])
     told = message(solution.task, solution.status, ordered, solution.reasons)
