@@ -174,7 +174,7 @@ def test_long_and_many_reasons_push_the_table_down():
     renderer = FigureCanvasAgg(figure).get_renderer()
     boxes = [text.get_window_extent(renderer) for text in figure.texts]
     for index, one in enumerate(boxes):
-        assert 0.0 < one.x0
+        assert one.x0 > 0.0
         assert one.x1 < figure.bbox.x1
         assert not any(one.shrunk(0.9, 0.6).overlaps(other.shrunk(0.9, 0.6)) for other in boxes[:index])
     assert bottom < 180.0

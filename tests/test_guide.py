@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from synth.errors import SynthError
 from synth.geometry import Box, Capsule
 from synth.guide import MARKERS, guide_text, instructions, make_guide, solution_text, summary_text
 from synth.guide.guide import SPACING, place
@@ -19,7 +20,6 @@ from synth.robot import PRESETS, Arm, ArmBody, BasePose, Interval, JointLimits, 
 from synth.robot.closest import closest_joints
 from synth.robot.kinematics import Kinematics
 from synth.synthesis import Bound, Design, Release, Solution, Status, Timing, showing, verify
-from synth.errors import SynthError
 from synth.task import DEFAULT_TOLERANCE, Obstacle, PointTarget, Task
 
 ROBOT = PRESETS["malleable-2dof"]

@@ -1,4 +1,4 @@
-"""Laws of numbers in sentences: on the safe side, by less than the last digit, and no more digits than asked for."""
+"""Laws of numbers in sentences: on the safe side, by less than the last digit, with the digits asked for."""
 
 import math
 from decimal import Decimal

@@ -21,7 +21,8 @@ def markers_csv(guide: Guide | None) -> str:
 
     Returns:
         A header, then a row for each of P1, ..., P4, L050, L100, ..., END: its place in the task frame
-        in mm, and the angle of joint 1 at which it is there, in degrees. Only the header without a guide, or if the task is not met: these are no points to bend to.
+        in mm, and the angle of joint 1 at which it is there, in degrees. Only the header without a guide,
+        or if the task is not met: these are no points to bend to.
     """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

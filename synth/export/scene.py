@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from synth.arrays import FloatArray
-    from synth.guide import Guide, Placement
     from synth.geometry import Solid
+    from synth.guide import Guide, Placement
     from synth.synthesis import Design, Solution
 
 # Colours of Okabe and Ito, told apart with any colour vision; line styles tell them apart in grey.
@@ -204,7 +204,8 @@ def _draw_obstacle(axes: Axes, name: str, solid: Solid, view: tuple[int, int], l
 def solid_outline(solid: Solid, view: tuple[int, int]) -> FloatArray:
     """Return the corners of what a view shows of a convex solid, shape (k, 2), m, around it.
 
-    A box has the corner that is farthest in each of many directions; a capsule its ends, and the radius about them.
+    A box has the corner that is farthest in each of many directions; a capsule its ends, and the
+    radius about them.
     """
     angles = np.linspace(0.0, 2.0 * math.pi, _OUTLINE, endpoint=False)
     around = np.column_stack([np.cos(angles), np.sin(angles)])

@@ -1,4 +1,4 @@
-"""`guide.pdf`: one A4 page. Of a task that is met, to be held while the link is bent; else, what is missed and why."""
+"""`guide.pdf`: one A4 page, to be held while the link is bent; or, of a task that is not met, what is missed."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def draw_sheet(solution: Solution, guide: Guide | None, file_format: str = "pdf"
         mpl.rcdefaults()  # the user's own style is for the user's own plots
         mpl.rc("font", family="DejaVu Sans")
         mpl.rc("text", usetex=False, parse_math=False)  # a $ in a name is a dollar
-        # Glyph by glyph, since to cut a whole font to size takes a second; text in Latin letters can be searched.
+        # Glyph by glyph, since to cut a whole font to size takes a second. Latin letters can be searched.
         mpl.rc("pdf", fonttype=3)
         mpl.rc("hatch", linewidth=0.4)
         # A name in a script that the font lacks prints as boxes; that is no reason to talk of fonts.

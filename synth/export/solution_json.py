@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Any
 from synth.export.plain import plain
 from synth.export.task_json import arcs_to_json, task_to_json
 from synth.guide import MARKERS, make_guide
-from synth.synthesis import Bound
 from synth.synthesis.solution import target_results
 from synth.version import __version__
 
 if TYPE_CHECKING:
     from synth.guide import Guide
     from synth.robot import Arm
-    from synth.synthesis import Design, Motion, Solution
+    from synth.synthesis import Bound, Design, Motion, Solution
     from synth.task import Task
 
 SCHEMA = "synth.solution/2"

@@ -52,7 +52,7 @@ class Placement:
 
     @property
     def heading(self) -> float:
-        """Direction of axis 2 seen from above, from x towards y, in (-pi, pi], rad; NaN where it is vertical."""
+        """Direction of axis 2 seen from above, from x towards y, in (-pi, pi], rad; NaN if it is vertical."""
         x, y, _ = self.axis_direction
         return math.nan if math.hypot(x, y) < _VERTICAL else math.atan2(y, x)
 

@@ -30,11 +30,14 @@ def instructions(guide: Guide) -> tuple[str, ...]:
     """
     steps = [] if guide.cut is None else [cut_sentence(*guide.cut)]
     limit = 1e3 * guide.arm.robot.link.min_bend_radius
+    shape = (
+        f"Soften the link and shape it: {link_sentence(guide.link)}, never below {limit:.0f} mm. "
+        "P3 and P4 come to their places; L100 is the middle of the tube, 100 mm along it from P2, END its end."
+    )
     return (
         *steps,
         hold_sentence(guide),
-        f"Soften the link and shape it: {link_sentence(guide.link)}, never below {limit:.0f} mm. P3 and P4 come to "
-        "their places; L100 is the middle of the tube, 100 mm along it from P2, END its end.",
+        shape,
         f"{axis_sentence(guide)} {distances_sentence(guide)}",
         " ".join(tolerance_sentences(guide)),
         *([] if guide.forgiveness is None else [hand_sentence(guide.forgiveness)]),
@@ -68,7 +71,8 @@ def axis_sentence(guide: Guide) -> str:
     """Return how axis 2 lies at the hold angle, as an elevation and a heading."""
     elevation, heading = math.degrees(guide.hold.elevation), guide.hold.heading
     if math.isnan(heading):
-        return f"Axis 2 runs through END, P3 and P4 and is vertical, P4 {'above' if elevation > 0 else 'below'} P3."
+        side = "above" if elevation > 0.0 else "below"
+        return f"Axis 2 runs through END, P3 and P4 and is vertical, P4 {side} P3."
     side = "below" if f"{elevation:z.1f}".startswith("-") else "above"
     turn = math.degrees(heading)
     return (
@@ -116,10 +120,11 @@ def hand_sentence(forgiveness: Forgiveness) -> str:
         f"a hand as published ({1e3 * place:.1f} ± {1e3 * place_spread:.1f} mm, "
         f"{math.degrees(turn):.0f} ± {math.degrees(turn_spread):.1f} deg)"
     )
-    miss = f"the worst miss to expect is {rounded_up(forgiveness.expected_worst_miss)} mm"
-    rest = f"with the joints recomputed from the measured arm; {miss}. So measure, and correct until it is right."
+    miss = f"expect a worst miss of {rounded_up(forgiveness.expected_worst_miss)} mm"
+    rest = f"joints recomputed from the measured arm; {miss}. So measure, and correct until it is right."
     if forgiveness.chance < _NO_HAND:
-        return f"No hand holds this at the first try: {hand} meets every target in less than 2 % of tries, {rest}"
+        never = "No hand holds this at the first try"
+        return f"{never}: {hand} meets every target in less than 2 % of tries, {rest}"
     share = min(int(rounded_down(forgiveness.chance, Unit.PERCENT, 0)), 99)
     return f"At the first try {hand} meets every target in about {share} % of tries, {rest}"
 

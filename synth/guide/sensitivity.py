@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 _ON_THE_SURFACE = 1e-6  # m
 _AT_A_LIMIT = 1e-6  # rad
 _WHOLE_TURN = 2.0 * math.pi - 1e-9  # rad
-# A tilt that turns P5 along the surface is bounded by nothing in first order; nobody is off by more than this,
-# and a first order says nothing of it.
+# A tilt that turns P5 along the surface is bounded by nothing in first order; nobody is off by more than
+# this, and a first order says nothing of it.
 _NO_RATE = 1e-12  # m/rad
 LARGEST_TILT = math.radians(10.0)
-# The first order is tried: errors of the size that it allows, in this many directions, on the targets that are
-# lost first, are made smaller by the share of the slack that they take, again and again.
+# The first order is tried: errors of the size that it allows, in this many directions, on the targets that
+# are lost first, are made smaller by the share of the slack that they take, again and again.
 _DIRECTIONS, _TRIED_TARGETS, _TRIALS = 96, 100, 4
 _NO_SLACK = 1e-12  # m
 # Velocities of P5 this nearly parallel are those of the rim of the workspace, which P5 can leave in two

@@ -218,7 +218,8 @@ def _too_little(verb: str, needed: float, limit: float, unit: Unit, what: str = 
     """Return by how much a limit is too little, with as many digits as tell the two numbers apart."""
     told = [(rounded_down(needed, unit, n), f"{unit.of(limit):.{n}f}") for n in range(1, 7)]
     more, most = next((pair for pair in told if float(pair[0]) > float(pair[1])), told[-1])
-    return f"the link would have to {verb} more than {more} {unit.symbol}{what}; {most} {unit.symbol} is its limit"
+    symbol = unit.symbol
+    return f"the link would have to {verb} more than {more} {symbol}{what}; {most} {symbol} is its limit"
 
 
 def _the_link(link: MalleableLink) -> str:

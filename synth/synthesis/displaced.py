@@ -1,4 +1,4 @@
-"""What arms miss whose link does not end where it should, joint angles computed anew for where it does end."""
+"""What arms miss whose link does not end where it should, joint angles computed anew for where it does."""
 
 from __future__ import annotations
 

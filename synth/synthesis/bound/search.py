@@ -48,7 +48,7 @@ class Bound:
         best_found: The least worst weighted miss of all shapes that were found, m; infinite if none was.
         tightest_tolerance: The tightest tolerance of the targets, m.
         boxes: How many boxes of shapes were looked at.
-        left_out: What the task limits and the proof does not know, in words: it may be what the gap is due to.
+        left_out: What the task limits and the proof does not know, in words: the gap may be due to it.
     """
 
     lower_bound: float
