@@ -1,4 +1,4 @@
-"""`guide.pdf`: one A4 page, to be held while the link is bent; or, of a task that is not met, what is missed."""
+"""`guide.pdf`: one A4 page, to be held while the link is bent; of a task not met, what is missed."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ def instructions(guide: Guide) -> tuple[str, ...]:
     limit = 1e3 * guide.arm.robot.link.min_bend_radius
     shape = (
         f"Soften the link and shape it: {link_sentence(guide.link)}, never below {limit:.0f} mm. "
-        "P3 and P4 come to their places; L100 is the middle of the tube, 100 mm along it from P2, END its end."
+        "P3 and P4 come to their places; L100 is the middle of the tube, 100 mm along from P2, END its end."
     )
     return (
         *steps,

@@ -76,7 +76,7 @@ def knowledge(solution: Solution, most: int = _MOST_REASONS) -> list[str]:
 
 
 def reasons_told(solution: Solution, most: int) -> list[str]:
-    """Return why no more was found, but for what `proof_sentence` says: of many reasons the first, counted."""
+    """Return why no more was found, but for what `proof_sentence` says: of many the first, counted."""
     bound = solution.bound
     reasons = [reason for reason in solution.reasons if bound is None or reason != bound.sentence]
     if len(reasons) <= most:
