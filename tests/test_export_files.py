@@ -205,7 +205,7 @@ def test_names_of_one_long_word_can_be_read_on_the_sheet():
     assert "Werkstueckaufnahmevorr..." in text
     assert "Halle_7_Nord" in text
     for index in range(3):
-        assert f"Schraubenlo...unkt_oben_{index}" in text
+        assert f"Schraubenlo...nkt_oben_{index}" in text
 
 
 def test_a_solution_without_a_shape_has_a_sheet_and_no_points():

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from synth.synthesis import Solution
 
 # Millimetres of paper.
+_ROOM_FOR_A_NOTE = 50.0  # beside the title of the section
 _TICKS, _GAP_X, _GAP_Y = 10.0, 15.0, 13.0  # room for the numbers on the axes
 _LEAST_VIEW = 0.42  # of the room in height, for a side of the square in the corner
 _SCALES = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.5, 10.0)
@@ -85,7 +86,8 @@ def _section(page: Page, solution: Solution, scene: Scene, square: tuple[float, 
     axes = page.axes(x, y, side, side, np.stack([corner, corner + span]))
     page.text(x, y - 1.5, "Section: ρ, z, mm", 7.0, weight="bold")
     base = np.degrees([limits.lower, limits.upper])
-    page.text(x + side, y - 1.5, f"joint 1 {base[0]:z.0f}° to {base[1]:z.0f}°", 6.0, ha="right")
+    if side >= _ROOM_FOR_A_NOTE:
+        page.text(x + side, y - 1.5, f"joint 1 {base[0]:z.0f}° to {base[1]:z.0f}°", 6.0, ha="right")
     draw_section(axes, scene, solution.best, span / side)
 
 

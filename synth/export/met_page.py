@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from synth.export.names import shortened
 from synth.export.page import MARGIN
 from synth.export.target_table import target_table
 from synth.guide import base_sentence, instructions
@@ -12,7 +14,7 @@ from synth.guide import base_sentence, instructions
 if TYPE_CHECKING:
     from synth.export.page import Page
     from synth.guide import Guide
-    from synth.synthesis import Solution
+    from synth.synthesis import Motion, Solution
 
 # Millimetres on the page.
 _BODY = 44.0  # where the tables begin
@@ -21,6 +23,7 @@ _POINTS_HEIGHT, _POINT_PITCH = 62.0, 4.2
 _MOST_POINTS = 19
 _WAYS = 132.0  # where the ways begin, right of the targets
 _MOST_WAYS = 6
+_NAME = 18  # characters of a target
 
 
 def fill_met(page: Page, solution: Solution, guide: Guide) -> float:
@@ -63,6 +66,11 @@ def _steps(page: Page, guide: Guide) -> float:
     return y
 
 
+def _short(way: Motion) -> Motion:
+    """Return a way between targets of shorter names."""
+    return replace(way, start=shortened(way.start, _NAME), end=shortened(way.end, _NAME))
+
+
 def _ways(page: Page, y: float, guide: Guide) -> float:
     """Write how the arm gets from target to target, those first where no way was found."""
     if not guide.ways:
@@ -72,7 +80,10 @@ def _ways(page: Page, y: float, guide: Guide) -> float:
     ways = sorted(guide.ways, key=lambda way: way.found)
     for way in ways[:_MOST_WAYS]:
         weight = "normal" if way.found else "bold"
-        y = page.paragraph(_WAYS, y, way.describe(), 56, most=4, pitch=3.1, size=6.5, weight=weight) + 0.4
+        y = (
+            page.paragraph(_WAYS, y, _short(way).describe(), 56, most=4, pitch=3.1, size=6.5, weight=weight)
+            + 0.4
+        )
     if len(ways) > _MOST_WAYS:
         y = page.paragraph(_WAYS, y, f"and {len(ways) - _MOST_WAYS} more: see solution.json", 50, size=6.5)
     return y

@@ -6,6 +6,7 @@ import math
 import textwrap
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+from unicodedata import east_asian_width
 
 import numpy as np
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 WIDTH, HEIGHT, MARGIN = 210.0, 297.0, 13.0  # A4
 _LINE = 3.9  # from one line of a paragraph to the next
+_SECOND_HALF = "\ue000"  # of the private use area: no text has it
 _APART = (13.0, 10.0)  # at least, of the numbers along an axis: across, up
 _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 
@@ -46,9 +48,11 @@ class Page:
         **style: Any,
     ) -> float:
         """Write lines of at most `width` characters, no more than `most`; return where the next line goes."""
-        lines = textwrap.wrap(text, width, break_on_hyphens=False, max_lines=most, placeholder=" ...")
+        # A character of twice the width counts twice: a stand-in follows it while the lines are broken.
+        doubled = "".join(each + _SECOND_HALF * (east_asian_width(each) in "WF") for each in text)
+        lines = textwrap.wrap(doubled, width, break_on_hyphens=False, max_lines=most, placeholder=" ...")
         for line in lines:
-            self.text(x, y, line, **style)
+            self.text(x, y, line.replace(_SECOND_HALF, ""), **style)
             y += pitch
         return y
 

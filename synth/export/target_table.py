@@ -41,7 +41,8 @@ def target_table(page: Page, x: float, y: float, solution: Solution) -> float:
     results = solution.targets if solution.designs else None
     heading = "Targets"
     if len(listed) < len(task.targets):
-        heading = f"{len(listed)} of {len(task.targets)} targets" + (", the worst" if results else "")
+        count = f"{len(listed)} of {len(task.targets)}"
+        heading = f"Targets, worst {count}" if results else f"{count} targets"
     page.text(x, y, heading, 9.5, weight="bold")
     heads = [("miss", 56.0), ("of, mm", 68.0)]
     if solution.found:
