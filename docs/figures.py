@@ -128,7 +128,8 @@ def main() -> None:
     solution = solve(load_task(TASK))
     figure = workspace_picture(solution)
     figure.savefig(ROOT / "docs" / "workspace.png", dpi=110)
-    sheet = draw_sheet(solution, make_guide(solution.task, solution.best), "png")
+    crates = solve(load_task(ROOT / "problems" / "two-crates" / "task.yaml"))
+    sheet = draw_sheet(crates, make_guide(crates.task, crates.best), "png")
     (ROOT / "docs" / "guide.png").write_bytes(sheet)
 
 

@@ -10,7 +10,7 @@ from sampled_shapes import boxes_at, contradictions, noisy_task, parameters, sha
 from scipy.optimize import linprog
 
 from synth.export import solution_to_json
-from synth.robot import Arm, ArmBody, Interval, LinkReach
+from synth.robot import Arm, ArmBody, Interval, JointLimits, LinkReach
 from synth.synthesis import Status, solve, verify
 from synth.synthesis.bound import Bound, LinkEnd, prove
 from synth.synthesis.bound.boxes import Boxes
@@ -343,4 +343,29 @@ def test_a_bound_has_a_sentence_where_nothing_was_found():
         Bound(2.0e-3, np.inf, 1e-3, 7).sentence
         == "proven: every shape misses some target by at least 2.000 mm"
     )
-    assert Bound(2.0e-3, 2.5e-3, 1e-3, 7).sentence.endswith("within 0.500 mm of the best there is")
+    assert Bound(2.0e-3, 2.5e-3, 1e-3, 7).sentence.endswith("found is within 0.500 mm of the least there is")
+    assert Bound(0.0, np.inf, 1e-3, 7).sentence == "proven: nothing yet"
+
+
+def test_a_bound_is_told_on_the_safe_side_and_of_the_shape_shown():
+    bound = Bound(2.0005e-3, 2.1e-3, 1e-3, 7)
+    assert "at least 2.000 mm" in bound.sentence
+    assert "within 0.100 mm" in bound.sentence
+    assert bound.sentence_of_shape(9.69051e-3).endswith(
+        "the worst miss of this shape is within 7.691 mm of the least there is"
+    )
+
+
+def test_a_gap_that_may_be_joint_1s_is_said_to_be_so():
+    """Joint 1 turns by little, so every shape misses by far more than the bound, which leaves joint 1 out."""
+    task = noisy_task(2)
+    limits = replace(task.robot.joint_limits, base=Interval(-0.2, 0.2))
+    narrow = replace(task, robot=replace(task.robot, joint_limits=limits))
+    bound = prove(narrow, 0.3, np.full(len(task.targets), 0.3), tightest=1e-3, stop=lambda: True)
+    assert "leaves out that joint 1 turns by 23 deg only; it may be all that the gap is" in bound.sentence
+    assert "leaves out" not in replace(bound, lower_bound=0.29995).sentence  # there is no gap to speak of
+    free = replace(task.robot, joint_limits=JointLimits(second=task.robot.joint_limits.second))
+    bound = prove(
+        replace(task, robot=free), 0.3, np.full(len(task.targets), 0.3), tightest=1e-3, stop=lambda: True
+    )
+    assert "leaves out" not in bound.sentence

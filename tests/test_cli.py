@@ -1,5 +1,6 @@
 """The command line: exit codes, what is printed where, and Ctrl-C."""
 
+import io
 import json
 import os
 import re
@@ -9,6 +10,7 @@ import sys
 import time
 from pathlib import Path
 
+import click
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -16,6 +18,7 @@ from planted import out_of_reach, planted_task
 from test_task_reading import WRONG
 
 from synth.cli import main
+from synth.cli.terminal import as_shown
 
 OUT_OF_REACH = Path(__file__).parents[1] / "problems" / "out-of-reach" / "task.yaml"
 
@@ -69,7 +72,7 @@ def test_a_found_task_exits_with_0_and_writes_its_files(easy, tmp_path):
 def test_json_is_all_that_stands_on_stdout_and_stderr_is_silent_in_a_pipe(easy):
     answer = run("solve", easy, "--json", "--seed", "3")
     solution = json.loads(answer.stdout)
-    assert solution["schema"] == "synth.solution/1"
+    assert solution["schema"] == "synth.solution/2"
     assert solution["seed"] == 3
     assert answer.stderr == ""
 
@@ -88,6 +91,60 @@ def test_a_task_out_of_reach_exits_with_1_and_still_writes_its_best_effort(tmp_p
     assert "reaches at most" in solution["message"]
     assert all(np.isfinite(target["miss"]) for target in solution["targets"])
     assert (tmp_path / "out" / "guide.pdf").exists()
+
+
+def test_another_shape_is_given_on_request_and_one_too_many_is_refused(easy, tmp_path):
+    best = json.loads(run("solve", easy, "--json").stdout)
+    count = 1 + len(best["alternatives"])
+    assert count > 1
+    answer = run("solve", easy, "--json", "--shape", 2, "-o", tmp_path / "out")
+    assert answer.returncode == 0
+    second = json.loads(answer.stdout)
+    assert second["shape"] == 2
+    assert second["link"]["arcs"] == best["alternatives"][0]["link"]["arcs"]
+    assert json.loads((tmp_path / "out" / "solution.json").read_text())["guide"] == second["guide"]
+    answer = run("solve", easy, "--shape", count + 1)
+    assert answer.returncode == 2
+    assert answer.stdout == ""
+    assert re.fullmatch(rf"there is no shape {count + 1} to show: there are \d+ distinct .*\n", answer.stderr)
+
+
+class Stream(io.StringIO):
+    """A stream with an encoding, which says whether it is a terminal."""
+
+    def __init__(self, encoding, terminal):
+        super().__init__()
+        self._encoding, self._terminal = encoding, terminal
+
+    @property
+    def encoding(self):
+        return self._encoding
+
+    def isatty(self):
+        return self._terminal
+
+
+TEXT = "✓ two crates: found\n✗ place  MISSED\n• 9.6 ± 2.1 mm"
+
+
+def test_colour_comes_on_a_terminal_only_and_not_where_it_is_not_wanted(monkeypatch):
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    shown = as_shown(TEXT, Stream("utf-8", terminal=True))
+    assert click.unstyle(shown) == TEXT
+    found, missed, bullet = shown.split("\n")
+    assert found.startswith("\x1b[32m")
+    assert missed.startswith("\x1b[31m")
+    assert bullet == "• 9.6 ± 2.1 mm"
+    assert as_shown(TEXT, Stream("utf-8", terminal=False)) == TEXT
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert as_shown(TEXT, Stream("utf-8", terminal=True)) == TEXT
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252", "latin-1", None])
+def test_signs_that_an_encoding_lacks_give_way_to_others_that_tell_found_from_missed(encoding):
+    shown = as_shown(TEXT, Stream(encoding, terminal=False))
+    shown.encode(encoding or "ascii")
+    assert [line[0] for line in shown.split("\n")][:2] == ["+", "x"]
 
 
 def test_why_says_what_would_release_a_task_that_is_not_met():

@@ -9,14 +9,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 from pypdf import PdfReader
 
 from synth.errors import SynthError
 from synth.export import draw_sheet, markers_csv, prepare_directory, write_files
+from synth.export.missed_page import fill_missed
+from synth.export.names import shortened
+from synth.export.page import HEIGHT, WIDTH, Page
+from synth.export.scene import solid_outline
+from synth.geometry import Box, Capsule
 from synth.guide import make_guide
 from synth.robot import PRESETS, Arm, BasePose, Interval, JointLimits, LinkShape, MalleableLink
 from synth.synthesis import Design, Solution, Status, Timing, verify
-from synth.task import PointTarget, Task
+from synth.task import Obstacle, PointTarget, Task
 
 ROBOT = PRESETS["malleable-2dof"]
 NAMES = ["solution.json", "guide.pdf", "markers.csv"]
@@ -46,6 +53,11 @@ def page_of(content):
     return reader.pages[0]
 
 
+def words_of(solution):
+    """The text of a sheet with its lines joined: a name may be wrapped anywhere."""
+    return " ".join(text_of(solution).split())
+
+
 def text_of(solution):
     guide = make_guide(solution.task, solution.best) if solution.designs else None
     return page_of(draw_sheet(solution, guide)).extract_text()
@@ -69,15 +81,131 @@ def test_the_sheet_is_one_a4_page_with_what_the_operator_needs():
     text = page.extract_text()
     for value in GUIDE.hold.markers[2]:
         assert f"{1e3 * value:.1f}" in text
-    for words in ("two crates", "Set joint 1 to 180.0 deg and hold it there.", "Found", "target 2", "END"):
+    for words in ("two crates", "Set joint 1 to 180.0 deg and hold it there", "Found", "target 2", "END"):
         assert words in text
+    told = " ".join(text.split())
+    s = 1e3 * np.sqrt(SOLUTION.robot.squared_distances)
+    assert f"d13 {s[0, 2]:.1f}, d14 {s[0, 3]:.1f}, d23 {s[1, 2]:.1f}, d24 {s[1, 3]:.1f} mm" in told
+    for words in (
+        "horizontal, heading",
+        "P1 at (100.0, -200.0, 50.0) mm, turned by 40.1 deg",
+        "No hand holds this",
+    ):
+        assert words in told
+    assert "target 0 to target 1: joint 1 by" in told
+    assert "Cut the rigid link" not in told
 
 
-def test_a_shape_that_misses_says_so_in_large_letters():
-    text = text_of(make_solution(offset=0.4))
-    assert "NOT FOUND" in text
-    assert "NO " in text
-    assert "Found:" not in text
+def test_a_rigid_link_that_was_chosen_is_cut_first():
+    robot = replace(ROBOT, rigid_link=replace(ROBOT.rigid_link, d35=Interval(0.3, 0.5)))
+    told = words_of(make_solution(robot=robot))
+    assert "1 Cut the rigid link to d35 = 455.0 mm and d45 = 460.0 mm" in told
+
+
+def test_obstacles_are_drawn_and_named_with_the_clearance_at_each_target():
+    obstacles = (
+        Obstacle("the cabinet", Box([1.1, -0.2, 0.3], [0.2, 0.5, 0.6], 0.4)),
+        Obstacle("the pipe", Capsule([[-1.2, 0.0, 0.0], [-1.2, 0.0, 1.0]], 0.03)),
+    )
+    task = replace(SOLUTION.task, obstacles=obstacles)
+    design = Design(SOLUTION.robot, verify(task, SOLUTION.robot))
+    assert design.verification.found
+    text = text_of(replace(SOLUTION, task=task, designs=(design,)))
+    assert text.count("the cabinet") == text.count("the pipe") == 3  # in each view
+    assert "clear, mm" in text
+    assert "obstacles" in text
+
+
+@pytest.mark.parametrize("view", [(0, 1), (0, 2), (1, 2)])
+@pytest.mark.parametrize(
+    "solid", [Box([0.3, 0.1, 0.2], [0.1, 0.4, 0.2], 0.4), Capsule([[0.0, 0.1, 0.2], [0.3, 0.4, 0.9]], 0.05)]
+)
+def test_the_outline_of_an_obstacle_is_what_a_view_shows_of_it(solid, view):
+    outline = solid_outline(solid, view)
+    for angle in np.linspace(0.0, 2.0 * math.pi, 36, endpoint=False):
+        direction = np.zeros(3)
+        direction[list(view)] = math.cos(angle), math.sin(angle)
+        farthest = (outline @ direction[list(view)]).max()
+        assert farthest == pytest.approx(solid.support(direction), abs=1e-9)
+
+
+def test_a_shape_that_misses_says_so_in_large_letters_and_gives_no_instructions():
+    missed = make_solution(offset=0.4)
+    impossible = replace(missed, status=Status.PROVEN_IMPOSSIBLE, reasons=("it is out of reach",))
+    for solution, word in ((missed, "NOT FOUND: no shape was found"), (impossible, "IMPOSSIBLE: no shape")):
+        text = text_of(solution)
+        assert word in text
+        assert "NO " in text
+        for words in (
+            "Found:",
+            "Set joint 1",
+            "Hold axis 2",
+            "What to do",
+            "Points with",
+            "P3",
+            "END",
+            "joints 1, 2",
+        ):
+            assert words not in text
+        assert markers_csv(make_guide(solution.task, solution.best)) == markers_csv(None)
+    assert "it is out of reach" in text
+
+
+def test_the_banner_is_no_wider_than_its_band():
+    """White on white is read by nobody: what is drawn of each banner lies on black."""
+    for status in set(Status) - {Status.FOUND}:
+        figure = Figure(figsize=(WIDTH / 25.4, HEIGHT / 25.4))
+        fill_missed(Page(figure), replace(make_solution(offset=0.4), status=status))
+        renderer = FigureCanvasAgg(figure).get_renderer()
+        (band,) = figure.artists
+        (banner,) = [text for text in figure.texts if text.get_color() == "white"]
+        box, inside = band.get_window_extent(renderer), banner.get_window_extent(renderer)
+        assert box.x0 <= inside.x0
+        assert inside.x1 <= box.x1
+        assert box.y0 <= inside.y0 <= inside.y1 <= box.y1
+
+
+def test_long_and_many_reasons_push_the_table_down():
+    long = "because the link would have to bend more sharply than it can where the shelf is " * 12
+    reasons = tuple(f"{i}: {long}" for i in range(30))
+    solution = replace(make_solution(offset=0.4, count=20), status=Status.PROVEN_IMPOSSIBLE, reasons=reasons)
+    figure = Figure(figsize=(WIDTH / 25.4, HEIGHT / 25.4))
+    bottom = fill_missed(Page(figure), solution)
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    boxes = [text.get_window_extent(renderer) for text in figure.texts]
+    for index, one in enumerate(boxes):
+        assert one.x0 > 0.0
+        assert one.x1 < figure.bbox.x1
+        assert not any(one.shrunk(0.9, 0.6).overlaps(other.shrunk(0.9, 0.6)) for other in boxes[:index])
+    assert bottom < 180.0
+    assert "and 25 more of this kind" in [text.get_text() for text in figure.texts]
+
+
+@pytest.mark.parametrize(
+    ("name", "most", "shown"),
+    [
+        ("crate", 24, "crate"),
+        ("a" * 30 + "17", 24, "a" * 11 + "..." + "a" * 8 + "17"),
+        ("left side of the bin, upper 3", 12, "left...er 3"),
+        ("two\n lines", 24, "two lines"),
+    ],
+)
+def test_a_long_name_keeps_its_beginning_and_its_end(name, most, shown):
+    assert shortened(name, most) == shown
+    assert len(shown) <= most
+
+
+def test_names_of_one_long_word_can_be_read_on_the_sheet():
+    solution = make_solution(name="Werkstueckaufnahmevorrichtungspositionierung_Halle_7_Nord")
+    targets = tuple(
+        replace(t, name=f"Schraubenlochmittelpunkt_oben_{i}") for i, t in enumerate(solution.task.targets)
+    )
+    task = replace(solution.task, targets=targets)
+    text = text_of(replace(solution, task=task))
+    assert "Werkstueckaufnahmevorr..." in text
+    assert "Halle_7_Nord" in text
+    for index in range(3):
+        assert f"Schraubenlo...nkt_oben_{index}" in text
 
 
 def test_a_solution_without_a_shape_has_a_sheet_and_no_points():

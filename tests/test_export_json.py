@@ -3,14 +3,26 @@
 import json
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from synth.export import solution_to_json
-from synth.robot import PRESETS, Arm, BasePose, LinkShape
-from synth.synthesis import Design, Solution, Status, Timing, verify
-from synth.task import PointTarget, Task
+from synth.geometry import Box, Capsule
+from synth.robot import (
+    PRESETS,
+    Arm,
+    BasePose,
+    Interval,
+    JointLimits,
+    LinkShape,
+    MalleableLink,
+    RigidLink,
+    Robot,
+)
+from synth.synthesis import Design, Solution, Status, Timing, showing, verify
+from synth.task import Objective, Obstacle, PointTarget, Task, Topology
 
 ROBOT = PRESETS["malleable-2dof"]
 BASE = BasePose([0.1, -0.2, 0.05], 0.7)
@@ -101,10 +113,10 @@ def test_guide_distances_and_centreline_follow_from_the_arcs():
     p4 = p3 + ROBOT.d34 * frame[:, 0]
     points = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, ROBOT.d12], p3, p4])
     markers = np.array([content["guide"]["markers"][name] for name in ("P1", "P2", "P3", "P4")])
-    np.testing.assert_allclose(markers, in_task(content, points), atol=1e-7)
-    held = rotation([0.0, 0.0, content["guide"]["hold"]["joint1"]])
-    hold = np.array(list(content["guide"]["hold"]["markers"].values()))
-    np.testing.assert_allclose(hold, in_task(content, points @ held.T), atol=1e-7)
+    joint1 = content["guide"]["hold"]["joint1"]
+    assert ROBOT.joint_limits.base.contains(joint1)
+    held = rotation([0.0, 0.0, joint1])
+    np.testing.assert_allclose(markers, in_task(content, points @ held.T), atol=1e-7)
     for pair in PAIRS[:6]:
         i, j = (int(digit) - 1 for digit in pair)
         assert np.linalg.norm(markers[i] - markers[j]) == pytest.approx(content["distances"][pair])
@@ -116,7 +128,99 @@ def test_guide_distances_and_centreline_follow_from_the_arcs():
     steps = np.linalg.norm(np.diff(centreline, axis=0), axis=1)
     assert steps.max() <= 0.01
     assert steps.sum() == pytest.approx(content["link"]["length"], rel=1e-3)
-    np.testing.assert_allclose(content["guide"]["axis2"]["direction"], (markers[3] - markers[2]) / ROBOT.d34)
+    axis = content["guide"]["axis2"]
+    np.testing.assert_allclose(axis["direction"], (markers[3] - markers[2]) / ROBOT.d34)
+    elevation, heading = axis["elevation"], axis["heading"]
+    level = math.cos(elevation)
+    upwards = [level * math.cos(heading), level * math.sin(heading), math.sin(elevation)]
+    np.testing.assert_allclose(axis["direction"], upwards, atol=1e-9)
+
+
+def test_the_ways_lead_from_target_to_target():
+    content = read_back(SOLUTION)
+    assert [(way["from"], way["to"]) for way in content["ways"]] == [("t0", "t1"), ("t1", "t2")]
+    for way, (start, end) in zip(content["ways"], pairwise(content["targets"]), strict=True):
+        assert way["found"] == bool(way["joints"])
+        if way["found"]:
+            assert way["joints"][0] in [start["joints"], *start["alternatives"]]
+            assert way["joints"][-1] in [end["joints"], *end["alternatives"]]
+
+
+def solid_of(obstacle):
+    """The solid of an obstacle of the file, by its contract."""
+    if "box" in obstacle:
+        box = obstacle["box"]
+        return Box(box["center"], box["size"], box["yaw"])
+    if "sphere" in obstacle:
+        return Capsule.sphere(obstacle["sphere"]["center"], obstacle["sphere"]["radius"])
+    capsule = obstacle["capsule"]
+    return Capsule([capsule["from"], capsule["to"]], capsule["radius"])
+
+
+def task_of(content):
+    """The task of a solution, rebuilt from the file alone."""
+    task = content["task"]
+    robot, link, rigid, limits = (
+        task["robot"], task["robot"]["link"], task["robot"]["rigid_link"], task["robot"]["joint_limits"]
+    )  # fmt: skip
+    most = math.inf if link["max_total_bend"] is None else link["max_total_bend"]
+    return Task(
+        task["name"],
+        Robot(
+            robot["name"],
+            robot["d12"],
+            MalleableLink(Interval(*link["length"]), link["min_bend_radius"], link["diameter"], most),
+            robot["d34"],
+            robot["tip_offset"],
+            RigidLink(Interval(*rigid["d35"]), Interval(*rigid["d45"]), rigid["diameter"]),
+            JointLimits(Interval(*limits["base"]), Interval(*limits["second"])),
+        ),
+        tuple(PointTarget(t["name"], t["position"], t["tolerance"], t["weight"]) for t in task["targets"]),
+        BasePose(task["base"]["position"], task["base"]["yaw"]),
+        task["floor"],
+        Topology(task["topology"]),
+        Objective(task["objective"]),
+        tuple(Obstacle(each["name"], solid_of(each)) for each in task["obstacles"]),
+    )
+
+
+def test_the_file_alone_rebuilds_the_task_and_the_shape_and_verifies_it():
+    obstacles = (
+        Obstacle("shelf", Box([0.9, 0.2, 0.5], [0.1, 0.4, 0.2], 0.3)),
+        Obstacle("ball", Capsule.sphere([-0.9, 0.2, 0.5], 0.05)),
+        Obstacle("pipe", Capsule([[0.0, 0.9, 0.0], [0.0, 0.9, 1.0]], 0.04)),
+    )
+    task = replace(SOLUTION.task, obstacles=obstacles, topology=Topology.GENERAL, objective=Objective.MINIMAX)
+    arm = SOLUTION.robot
+    design = Design(arm, verify(task, arm))
+    content = read_back(replace(SOLUTION, task=task, designs=(design,)))
+    again = task_of(content)
+    assert again.robot == task.robot
+    arcs = content["link"]["arcs"]
+    shape = LinkShape([arc["curvature"] for arc in arcs], [arc["length"] for arc in arcs])
+    check = verify(
+        again, Arm(again.robot, shape, content["distances"]["35"], content["distances"]["45"], again.base)
+    )
+    assert check.found == design.verification.found
+    np.testing.assert_allclose(check.misses, design.verification.misses, atol=1e-12)
+    np.testing.assert_allclose(check.clearances, design.verification.clearances, atol=1e-12)
+    assert (again.topology, again.objective, again.floor) == (task.topology, task.objective, task.floor)
+
+
+def test_the_task_of_a_file_with_its_present_shape_is_whole():
+    task = replace(SOLUTION.task, current=SOLUTION.robot.shape)
+    content = read_back(replace(SOLUTION, task=task))
+    arcs = content["task"]["current"]["arcs"]
+    np.testing.assert_array_equal([arc["length"] for arc in arcs], SOLUTION.robot.shape.lengths)
+    assert read_back(NOTHING)["task"]["name"] == "crates"
+
+
+def test_another_shape_is_written_on_request():
+    both = make_solution()
+    content = read_back(showing(replace(both, designs=both.designs), 2))
+    assert content["shape"] == 2
+    assert content["link"]["arcs"] == read_back(both)["alternatives"][0]["link"]["arcs"]
+    assert [other["shape"] for other in content["alternatives"]] == [1]
 
 
 def test_gamma_and_the_invariants_vanish_where_the_end_effector_is():
@@ -136,10 +240,10 @@ def test_gamma_and_the_invariants_vanish_where_the_end_effector_is():
 
 def test_the_fields_of_the_contract_are_there():
     content = read_back(SOLUTION)
-    assert content["schema"] == "synth.solution/1"
+    assert content["schema"] == "synth.solution/2"
     assert list(content["distances"]) == list(content["squared_distances"]) == PAIRS
     assert set(content["time"]) == {"total", "screening", "solving", "verifying", "proving"}
-    assert (content["seed"], content["starts"], content["task"]) == (7, 3, "crates")
+    assert (content["seed"], content["starts"], content["shape"]) == (7, 3, 1)
     assert content["category"] in {"general", "puma", "scara", "spherical"}
     assert set(content["category_distances"]) == {"puma", "scara", "spherical"}
     assert content["bound"] is None
@@ -149,7 +253,8 @@ def test_the_fields_of_the_contract_are_there():
     }  # fmt: skip
     assert set(content["guide"]["tolerance"]) >= {"position", "direction"}
     (other,) = content["alternatives"]
-    assert set(other) == {"distances", "category", "link", "targets"}
+    assert set(other) == {"shape", "distances", "category", "link", "targets"}
+    assert other["shape"] == 2
     assert "centreline" not in other["link"]
     assert [target["name"] for target in other["targets"]] == ["t0", "t1", "t2"]
 
@@ -181,5 +286,15 @@ def test_without_a_shape_the_targets_are_listed_and_the_rest_is_null():
 
 
 def test_what_json_cannot_hold_is_null():
-    missed = make_solution(tolerance=1e-9, offset=0.02)
-    assert read_back(missed)["guide"]["tolerance"]["position"] is None
+    task = replace(SOLUTION.task, robot=replace(ROBOT, link=replace(ROBOT.link, max_total_bend=math.inf)))
+    assert read_back(replace(SOLUTION, task=task))["task"]["robot"]["link"]["max_total_bend"] is None
+
+
+def test_a_task_that_is_not_met_has_no_tolerance_to_keep_and_no_ways():
+    missed = read_back(make_solution(tolerance=1e-4, offset=0.02))
+    assert missed["guide"]["tolerance"] is None
+    assert missed["guide"]["forgiveness"] is None
+    assert missed["ways"] == []
+    met = read_back(SOLUTION)["guide"]
+    assert 0.0 <= met["forgiveness"]["chance"] <= 1.0
+    assert met["forgiveness"]["expected_worst_miss"] > 0.0

@@ -55,9 +55,13 @@ def test_tolerances_decide_and_ties_have_an_order():
 
 def test_the_sentence():
     distances = CategoryDistances(puma=0.0031, scara=math.radians(12.4), spherical=0.0402)
-    within = "(PUMA-like within 3.1 mm, SCARA within 12.4 deg, spherical within 40.2 mm)"
-    assert distances.describe() == f"general {within}"
-    assert distances.describe(length_tolerance=0.004) == f"puma {within}"
+    assert (
+        distances.describe() == "general; 3.1 mm from PUMA-like, 12.4 deg from SCARA, 40.2 mm from spherical"
+    )
+    distances = CategoryDistances(puma=0.00311, scara=math.radians(12.4), spherical=0.0402)
+    assert distances.describe(length_tolerance=0.004) == (
+        "PUMA-like to 3.2 mm; 12.4 deg from SCARA, 40.2 mm from spherical"
+    )
 
 
 @pytest.mark.parametrize("category", Category)

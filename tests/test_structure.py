@@ -15,7 +15,7 @@ LIBRARIES = {
         "synthesis/nlp/program.py",
     },
     "cvxpy": {"measurement/relaxation.py"},
-    "click": {"cli/main.py"},
+    "click": {"cli/main.py", "cli/terminal.py"},
     "rich": {"cli/session.py"},
     "ruamel": {"task/yaml_text.py"},
     "sympy": {"geometry/derivation.py"},

@@ -41,6 +41,10 @@ def main() -> None:
 )  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Print the solution as JSON and nothing else.")
 @click.option("--all", "show_all", is_flag=True, help="Show the alternative shapes, too.")
+@click.option(
+    "--shape", metavar="K", type=click.IntRange(min=1), default=1,
+    help="Show the K-th best shape, in text, JSON and files.  [default: 1, the best]",
+)  # fmt: skip
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the search.")
 @click.option("--prove", is_flag=True, help="Prove how much better than the best shape found any may be.")
 @click.option(
@@ -57,6 +61,7 @@ def solve(
     *,
     as_json: bool,
     show_all: bool,
+    shape: int,
     seed: int,
     prove: bool,
     why: bool,
@@ -73,7 +78,15 @@ def solve(
 
         form = "json" if as_json else "text"
         return solve_file(
-            session, task_file, output, form=form, show_all=show_all, seed=seed, prove=prove, why=why
+            session,
+            task_file,
+            output,
+            form=form,
+            show_all=show_all,
+            shape=shape,
+            seed=seed,
+            prove=prove,
+            why=why,
         )
 
     sys.exit(run(command, time_limit))

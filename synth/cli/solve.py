@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -26,6 +27,7 @@ def solve_file(
     *,
     form: str,
     show_all: bool,
+    shape: int,
     seed: int,
     prove: bool,
     why: bool,
@@ -38,6 +40,7 @@ def solve_file(
         output: Directory for the files, or None.
         form: "text" or "json".
         show_all: Whether the text shows the alternative shapes.
+        shape: Which of the shapes is shown, counted from 1, the best.
         seed: Seed of the search.
         prove: Whether to prove how much better any shape may be.
         why: Whether to look for what would release a task that is not met.
@@ -51,7 +54,7 @@ def solve_file(
     task = load_task(file)
     if output is not None:
         prepare_directory(output, SOLUTION_FILES)
-    from synth.synthesis import Status, explain, solve
+    from synth.synthesis import Status, explain, showing, solve
 
     with search_progress() as progress:
         solution = solve(
@@ -69,6 +72,8 @@ def solve_file(
                 lambda: explain(found, time_limit=session.for_search, stop=session.stop, progress=progress),
                 replace(found, notes=(*found.notes, "what would release the task was not found out")),
             )
+        if shape != 1:
+            solution = showing(solution, shape)
     if solution.breakdown:
         _tell_of_breakdown(solution)
     kept = output is None or _write(session, solution, output)
@@ -112,13 +117,14 @@ def _write(session: Session, solution: Solution, output: Path) -> bool:
 
 def _say(session: Session, solution: Solution, *, form: str, show_all: bool) -> bool:
     """Print the answer; whether it was delivered."""
+    from synth.cli.terminal import as_shown
     from synth.export import solution_to_json
     from synth.guide import solution_text
 
     def text() -> str:
         if form == "json":
             return json.dumps(solution_to_json(solution), indent=2, allow_nan=False)
-        return solution_text(solution, alternatives=show_all)
+        return as_shown(solution_text(solution, alternatives=show_all), sys.stdout)
 
     said = say(session.attempt("putting the answer into words", text, solution.message))
     if not said:

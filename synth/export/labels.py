@@ -61,7 +61,7 @@ class Labels:
         for text, point in self._wanted:
             half = 0.5 * np.array([_CHARACTER * len(text), _HEIGHT])
             places = _candidates(point, half)
-            costs = [drawn.cost(place, half) + 0.2 * float(np.linalg.norm(place - point)) for place in places]
+            costs = drawn.costs(places, half) + 0.2 * np.linalg.norm(places - point, axis=1)
             centre = places[int(np.argmin(costs))]
             drawn.boxes.append((centre, half))
             far = np.linalg.norm((centre - point) / (half + _LEADER_FROM), ord=np.inf) > 1.0
@@ -89,19 +89,33 @@ class _Drawn:
     frame: FloatArray
     boxes: list[tuple[FloatArray, FloatArray]] = field(default_factory=list)
 
-    def cost(self, centre: FloatArray, half: FloatArray) -> float:
-        """Return how bad a place is for a label: first what it hides, then where it leaves the frame."""
-        labels = sum(bool(np.all(np.abs(centre - other) < half + size + 0.2)) for other, size in self.boxes)
-        marks = int(np.all(np.abs(self.marks - centre) < half + 0.9, axis=1).sum())
-        lines = int(np.all(np.abs(self.lines - centre) < half + 0.4, axis=1).sum())
-        outside = np.any(centre - half < self.frame[:, 0] + 0.5) or np.any(
-            centre + half > self.frame[:, 1] - 0.5
-        )
-        return 100.0 * (labels + bool(outside)) + 10.0 * marks + 1.0 * lines
+    def costs(self, centres: FloatArray, half: FloatArray) -> FloatArray:
+        """Return how bad places are for a label: first what it hides, then where it leaves the frame.
+
+        Args:
+            centres: Places for the middle of the label, shape (k, 2).
+            half: Half the label's size, shape (2,).
+
+        Returns:
+            Costs, shape (k,).
+        """
+        hidden = np.zeros(len(centres))
+        for other, size in self.boxes:
+            hidden += np.all(np.abs(centres - other) < half + size + 0.2, axis=1)
+        inside = (centres - half >= self.frame[:, 0] + 0.5) & (centres + half <= self.frame[:, 1] - 0.5)
+        marks = _within(self.marks, centres, half + 0.9)
+        lines = _within(self.lines, centres, half + 0.4)
+        return np.asarray(100.0 * (hidden + ~inside.all(axis=1)) + 10.0 * marks + lines)
 
 
-def _candidates(point: FloatArray, half: FloatArray) -> list[FloatArray]:
-    """Return centres of a label's box, half its size away from `point` and a little more."""
+def _within(points: FloatArray, centres: FloatArray, half: FloatArray) -> FloatArray:
+    """Return how many points, shape (n, 2), are in boxes about centres, shape (k, 2); shape (k,)."""
+    return np.asarray(np.all(np.abs(points - centres[:, None]) < half, axis=-1).sum(axis=1))
+
+
+def _candidates(point: FloatArray, half: FloatArray) -> FloatArray:
+    """Return centres of a label's box, half its size away from `point` and a little more; shape (k, 2)."""
     angles = 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS + 0.25 * np.pi
     around = np.column_stack([np.cos(angles), np.sin(angles)])
-    return [point + direction * (half + reach - _HEIGHT / 2) for reach in _DISTANCES for direction in around]
+    reaches = half + np.array(_DISTANCES)[:, None, None] - _HEIGHT / 2
+    return np.asarray(point + (around * reaches).reshape(-1, 2))

@@ -21,12 +21,13 @@ def markers_csv(guide: Guide | None) -> str:
 
     Returns:
         A header, then a row for each of P1, ..., P4, L050, L100, ..., END: its place in the task frame
-        in mm, and the angle of joint 1 at which it is there, in degrees. Only the header without a guide.
+        in mm, and the angle of joint 1 at which it is there, in degrees. Only the header without a guide,
+        or if the task is not met: these are no points to bend to.
     """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(COLUMNS)
-    if guide is not None:
+    if guide is not None and guide.met:
         joint1 = f"{math.degrees(guide.hold.joint1):z.4f}"
         for name, point in guide.points(guide.hold).items():
             writer.writerow([name, *(f"{1e3 * value:z.4f}" for value in point), joint1])

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+from unicodedata import east_asian_width
+
+import numpy as np
 
 from synth.export.labels import FONT_SIZE
 
@@ -12,8 +16,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from synth.arrays import FloatArray
+
 WIDTH, HEIGHT, MARGIN = 210.0, 297.0, 13.0  # A4
 _LINE = 3.9  # from one line of a paragraph to the next
+_SECOND_HALF = "\ue000"  # of the private use area: no text has it
+_APART = (13.0, 10.0)  # at least, of the numbers along an axis: across, up
+_STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 
 
 @dataclass(frozen=True)
@@ -27,19 +36,71 @@ class Page:
         style = {"ha": "left", "va": "baseline", **style}
         self.figure.text(x / WIDTH, 1.0 - y / HEIGHT, text, fontsize=size, **style)
 
-    def paragraph(self, x: float, y: float, text: str, width: int, **style: Any) -> float:
-        """Write lines of at most `width` characters; return where the next line goes."""
-        for line in textwrap.wrap(text, width, break_on_hyphens=False):
-            self.text(x, y, line, **style)
-            y += _LINE
+    def paragraph(
+        self,
+        x: float,
+        y: float,
+        text: str,
+        width: int,
+        *,
+        most: int | None = None,
+        pitch: float = _LINE,
+        **style: Any,
+    ) -> float:
+        """Write lines of at most `width` characters, no more than `most`; return where the next line goes."""
+        # A character of twice the width counts twice: a stand-in follows it while the lines are broken.
+        doubled = "".join(each + _SECOND_HALF * (east_asian_width(each) in "WF") for each in text)
+        lines = textwrap.wrap(doubled, width, break_on_hyphens=False, max_lines=most, placeholder=" ...")
+        for line in lines:
+            self.text(x, y, line.replace(_SECOND_HALF, ""), **style)
+            y += pitch
         return y
 
-    def axes(self, x: float, y: float, width: float, height: float) -> Axes:
-        """Return axes with their upper left corner at (x, y)."""
+    def band(self, x: float, y: float, width: float, height: float, colour: str) -> None:
+        """Fill a rectangle with its upper left corner at (x, y)."""
+        from matplotlib.patches import Rectangle  # noqa: PLC0415 - as heavy as the page that is drawn anyway
+
+        corner = (x / WIDTH, 1.0 - (y + height) / HEIGHT)
+        size = (width / WIDTH, height / HEIGHT)
+        self.figure.add_artist(Rectangle(corner, *size, facecolor=colour, transform=self.figure.transFigure))
+
+    def axes(self, x: float, y: float, width: float, height: float, limits: FloatArray) -> Axes:
+        """Return axes with their upper left corner at (x, y), with a frame, a grid and numbers.
+
+        The library's own ticks are objects by the hundred, and take as long as all that is drawn.
+
+        Args:
+            x: Millimetres from the left edge of the page.
+            y: Millimetres from its upper edge.
+            width: Width, mm.
+            height: Height, mm.
+            limits: Lowest and highest coordinates shown, shape (2, 2): a row for each end.
+        """
+        from matplotlib.collections import LineCollection  # noqa: PLC0415 - the page is drawn anyway
+
         axes = self.figure.add_axes((x / WIDTH, 1.0 - (y + height) / HEIGHT, width / WIDTH, height / HEIGHT))
-        axes.tick_params(labelsize=FONT_SIZE, length=2.0, width=0.5)
-        axes.grid(color="#E8E8E8", linewidth=0.4)
-        axes.set_axisbelow(True)
-        for spine in axes.spines.values():
-            spine.set_linewidth(0.5)
+        axes.set_axis_off()
+        (left, bottom), (right, top) = limits.tolist()
+        axes.set(xlim=(left, right), ylim=(bottom, top))
+        across, up = _numbers(left, right, width / _APART[0]), _numbers(bottom, top, height / _APART[1])
+        grid = [[(at, bottom), (at, top)] for at in across] + [[(left, at), (right, at)] for at in up]
+        axes.add_collection(LineCollection(grid, colors="#E8E8E8", linewidths=0.4, zorder=-2), autolim=False)
+        frame = [(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)]
+        axes.add_collection(
+            LineCollection([frame], colors="black", linewidths=0.6, zorder=10, clip_on=False), autolim=False
+        )
+        for at in across:
+            where = x + width * (at - left) / (right - left)
+            self.text(where, y + height + 3.4, f"{at:g}", FONT_SIZE, ha="center")
+        for at in up:
+            where = y + height * (top - at) / (top - bottom)
+            self.text(x - 1.2, where + 0.8, f"{at:g}", FONT_SIZE, ha="right")
         return axes
+
+
+def _numbers(lowest: float, highest: float, most: float) -> FloatArray:
+    """Return round numbers from lowest to highest, evenly apart, about `most` of them and no more."""
+    least = (highest - lowest) / max(most, 1.0)
+    power = 10.0 ** math.floor(math.log10(least))
+    step = next(power * factor for factor in _STEPS if power * factor >= least)
+    return np.asarray(step * np.arange(math.ceil(lowest / step), math.floor(highest / step) + 1))

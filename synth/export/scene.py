@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -9,6 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.export.labels import Labels
+from synth.export.names import shortened
+from synth.geometry import Box
 from synth.guide import MARKERS
 from synth.robot import BasePose
 
@@ -19,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
+    from synth.geometry import Solid
     from synth.guide import Guide, Placement
     from synth.synthesis import Design, Solution
 
@@ -26,9 +30,12 @@ if TYPE_CHECKING:
 LINK, AXIS, TARGET, GHOST = "#0072B2", "#D55E00", "#000000", "#8C8C8C"
 # Which coordinates a view shows to the right and upwards: a third-angle projection.
 TOP, FRONT, SIDE = (0, 1), (0, 2), (1, 2)
+_LABEL = 24  # characters of an obstacle's name
 _POINTS_PER_MM = 72.0 / 25.4
 MOST_DRAWN = 1000  # targets, beside those that have a label: more cover each other
 _MOST_OF_LINK = 1000  # points of a very long link
+_AROUND = 120.0  # mm, how far obstacles are shown beyond the arm and its targets
+_OUTLINE = 72  # directions in which the outline of an obstacle is looked for
 _AXIS_LENGTH = 120.0  # mm to either side of the markers, drawn of an axis
 
 
@@ -42,7 +49,8 @@ class Scene:
         labels: A label for each target, or "" for those that have none.
         base: P1 and P2, shape (2, 3).
         floor: Height of the floor, or None.
-        hold: The points at the hold angle of joint 1, or None without a shape.
+        obstacles: Name and solid of each obstacle, in the task frame and in m.
+        hold: The points at the hold angle of joint 1, or None without a shape to bend the link to.
         link: Centreline at that angle, shape (k, 3).
         diameter: Outer diameter of the link.
         ghost: Centreline with joint 1 as at the first target, shape (k, 3).
@@ -54,6 +62,7 @@ class Scene:
     labels: Sequence[str]
     base: FloatArray
     floor: float | None
+    obstacles: Sequence[tuple[str, Solid]]
     hold: Placement | None
     link: FloatArray
     diameter: float
@@ -69,18 +78,21 @@ class Scene:
         link = ghost = rigid = nothing
         if guide is not None:
             arm, check = solution.robot, solution.best.verification
-            base, hold, reached = arm.base, guide.hold, check.within_tolerance
+            base, reached = arm.base, check.within_tolerance
             spacing = max(0.01, arm.shape.length / _MOST_OF_LINK)
             centreline = arm.shape.centreline(spacing) + arm.base_joint[1]
-            turns = [BasePose(yaw=angle) for angle in (hold.joint1, float(check.joints[0, 0]))]
-            link, ghost = (1e3 * base.to_task(turn.to_task(centreline)) for turn in turns)
+            ghost = 1e3 * base.to_task(BasePose(yaw=float(check.joints[0, 0])).to_task(centreline))
             rigid = np.stack([ghost[-1], 1e3 * check.reached[0]])
+            if guide.met:
+                hold = guide.hold
+                link = 1e3 * base.to_task(BasePose(yaw=hold.joint1).to_task(centreline))
         return cls(
             targets=1e3 * task.table.positions,
             reached=reached,
             labels=labels,
             base=1e3 * base.to_task([[0.0, 0.0, 0.0], [0.0, 0.0, task.robot.d12]]),
             floor=None if task.floor is None else 1e3 * (task.floor + base.position[2]),
+            obstacles=[(obstacle.name, obstacle.solid) for obstacle in task.obstacles],
             hold=hold,
             link=link,
             diameter=1e3 * task.robot.link.diameter,
@@ -103,7 +115,15 @@ class Scene:
         if self.floor is not None:
             points = np.vstack([points, [*points[0, :2], self.floor]])
         margin = 0.5 * self.diameter + 0.05 * float(np.ptp(points, axis=0).max())
-        return np.array([points.min(axis=0) - margin, points.max(axis=0) + margin])
+        lowest, highest = points.min(axis=0) - margin, points.max(axis=0) + margin
+        # Obstacles are shown as far as they are near: a wall may be long.
+        farthest = np.array([lowest, highest]) + np.array([[-_AROUND], [_AROUND]])
+        for _, solid in self.obstacles:
+            ends = 1e3 * np.array([-solid.support(-np.eye(3)), solid.support(np.eye(3))])
+            if np.all(ends[0] <= farthest[1]) and np.all(ends[1] >= farthest[0]):
+                lowest = np.minimum(lowest, np.maximum(ends[0], farthest[0]))
+                highest = np.maximum(highest, np.minimum(ends[1], farthest[1]))
+        return np.array([lowest, highest])
 
 
 def draw_view(axes: Axes, scene: Scene, view: tuple[int, int], scale: float) -> None:
@@ -112,6 +132,8 @@ def draw_view(axes: Axes, scene: Scene, view: tuple[int, int], scale: float) -> 
     tube = scene.diameter / scale * _POINTS_PER_MM
     if scene.floor is not None and view != TOP:
         _draw_floor(axes, scene.floor)
+    for name, solid in scene.obstacles:
+        _draw_obstacle(axes, name, solid, view, labels)
     for line, width in ((scene.ghost, tube), (scene.rigid, 0.5 * tube)):
         axes.plot(*line[:, pick].T, color="#E4E4E4", linewidth=width, solid_capstyle="butt", zorder=1)
         axes.plot(*line[:, pick].T, color=GHOST, linewidth=0.8, linestyle="--", zorder=1)
@@ -173,6 +195,39 @@ def _draw_floor(axes: Axes, height: float) -> None:
         bottom, height, facecolor="none", edgecolor="#C4C4C4", hatch="/////", linewidth=0.0, zorder=0
     )
     axes.axhline(height, color="black", linewidth=1.0, zorder=2)
+
+
+def _draw_obstacle(axes: Axes, name: str, solid: Solid, view: tuple[int, int], labels: Labels) -> None:
+    """Draw the outline of a convex solid, hatched, and name it in the middle of what is seen of it."""
+    outline = 1e3 * solid_outline(solid, view)
+    axes.fill(
+        *outline.T,
+        facecolor="#F4EFE0",
+        edgecolor="#7A6A3A",
+        hatch="xxx",
+        linewidth=0.7,
+        alpha=0.75,
+        zorder=0.5,
+    )
+    frame = np.array([axes.get_xlim(), axes.get_ylim()])
+    labels.add(shortened(name, _LABEL), np.clip(outline, frame[:, 0], frame[:, 1]).mean(axis=0))
+
+
+def solid_outline(solid: Solid, view: tuple[int, int]) -> FloatArray:
+    """Return the corners of what a view shows of a convex solid, shape (k, 2), m, around it.
+
+    A box has the corner that is farthest in each of many directions; a capsule its ends, and the
+    radius about them.
+    """
+    angles = np.linspace(0.0, 2.0 * math.pi, _OUTLINE, endpoint=False)
+    around = np.column_stack([np.cos(angles), np.sin(angles)])
+    if isinstance(solid, Box):
+        half = np.array(list(itertools.product((-0.5, 0.5), repeat=3))) * solid.size
+        points = (BasePose(yaw=solid.yaw).to_task(half) + solid.centre)[:, list(view)]
+        radius = 0.0
+    else:
+        points, radius = solid.ends[:, list(view)], solid.radius
+    return np.asarray(points[np.argmax(around @ points.T, axis=1)] + radius * around)
 
 
 def _draw_axis(axes: Axes, points: FloatArray, pick: list[int], labels: Labels) -> None:

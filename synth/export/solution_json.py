@@ -1,4 +1,4 @@
-"""`solution.json`: a solution as plain data of the schema `synth.solution/1`, in metres and radians."""
+"""`solution.json`: a solution as plain data of the schema `synth.solution/2`, in metres and radians."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from synth.export.plain import plain
+from synth.export.task_json import arcs_to_json, task_to_json
 from synth.guide import MARKERS, make_guide
-from synth.synthesis import MOST_MOTIONS, Bound, motions
 from synth.synthesis.solution import target_results
 from synth.version import __version__
 
 if TYPE_CHECKING:
-    from synth.guide import Guide, Placement
+    from synth.guide import Guide
     from synth.robot import Arm
-    from synth.synthesis import Design, Solution
+    from synth.synthesis import Bound, Design, Motion, Solution
     from synth.task import Task
 
-SCHEMA = "synth.solution/1"
+SCHEMA = "synth.solution/2"
 _CENTRELINE_SPACING = 0.01  # m
 _MOST_OF_CENTRELINE = 1000  # points: of a link longer than 10 m they are farther apart
 # What is fixed or shaped: all pairs but 15 and 25, which change as the robot moves.
@@ -36,34 +36,34 @@ def solution_to_json(solution: Solution) -> dict[str, Any]:
         JSON cannot hold, NaN and infinity, is None.
     """
     task, designs = solution.task, solution.designs
-    shape = _shape(task, designs[0]) if designs else dict.fromkeys(_SHAPE_FIELDS)
+    guide = make_guide(task, designs[0]) if designs else None
+    shape = dict.fromkeys(_SHAPE_FIELDS) if guide is None else _shape(guide)
     content = {
         "schema": SCHEMA,
         "version": __version__,
-        "task": task.name,
+        "task": task_to_json(task),
         "status": solution.status.value,
         "message": solution.message,
         "reasons": solution.reasons,
         "seed": solution.seed,
         "starts": solution.starts,
+        "shape": solution.shape if designs else None,
         "time": solution.time,
         **shape,
         "targets": _targets(task, designs[0]) if designs else _targets_missed(task),
-        "motions": list(motions(task, designs[0])) if _has_motions(solution) else None,
+        "ways": None if guide is None else [_way(motion) for motion in guide.ways],
         "bound": _bound(solution.bound),
         "releases": [
             {"limit": each.limit, "amount": each.amount, "share": each.share, "sentence": each.sentence}
             for each in solution.releases
         ],
         "notes": solution.notes,
-        "alternatives": [_alternative(task, design) for design in designs[1:]],
+        "alternatives": [
+            _alternative(task, number, design)
+            for number, design in zip(solution.shape_numbers[1:], designs[1:], strict=True)
+        ],
     }
     return plain(content)
-
-
-def _has_motions(solution: Solution) -> bool:
-    """Whether ways from target to target mean anything: there is a shape, and the targets are no cloud."""
-    return bool(solution.designs) and len(solution.task.targets) <= MOST_MOTIONS
 
 
 _SHAPE_FIELDS = (
@@ -83,9 +83,13 @@ def _bound(bound: Bound | None) -> dict[str, object] | None:
     return None if bound is None else {"lower_bound": bound.lower_bound, "gap": bound.gap}
 
 
-def _shape(task: Task, design: Design) -> dict[str, object]:
-    """Return all that describes one shape of the robot, with the keys `_SHAPE_FIELDS`."""
-    arm = design.arm
+def _way(motion: Motion) -> dict[str, object]:
+    return {"from": motion.start, "to": motion.end, "found": motion.found, "joints": motion.joints}
+
+
+def _shape(guide: Guide) -> dict[str, object]:
+    """Return all that describes the shape of a guide, with the keys `_SHAPE_FIELDS`."""
+    arm = guide.arm
     squared = _squared_distances(arm)
     spacing = max(_CENTRELINE_SPACING, arm.shape.length / _MOST_OF_CENTRELINE)
     centreline = arm.base.to_task(arm.shape.centreline(spacing) + arm.base_joint[1])
@@ -98,15 +102,16 @@ def _shape(task: Task, design: Design) -> dict[str, object]:
         arm.category_distances,
         arm.base,
         {**_link(arm), "centreline": centreline},
-        _guide(make_guide(task, design)),
+        _guide(guide),
     )
     return dict(zip(_SHAPE_FIELDS, values, strict=True))
 
 
-def _alternative(task: Task, design: Design) -> dict[str, object]:
+def _alternative(task: Task, number: int, design: Design) -> dict[str, object]:
     """Return another shape in short: enough to choose it, and to rebuild it from its arcs."""
     squared = _squared_distances(design.arm)
     return {
+        "shape": number,
         "distances": {pair: math.sqrt(s) for pair, s in squared.items()},
         "category": design.arm.category.value,
         "link": _link(design.arm),
@@ -129,10 +134,7 @@ def _link(arm: Arm) -> dict[str, object]:
         "length": shape.length,
         "min_bend_radius": shape.min_bend_radius,
         "total_bend": shape.total_bend,
-        "arcs": [
-            {"curvature": curvature, "length": length}
-            for curvature, length in zip(shape.curvatures, shape.lengths, strict=True)
-        ],
+        "arcs": arcs_to_json(shape),
     }
 
 
@@ -159,22 +161,26 @@ def _targets_missed(task: Task) -> list[object]:
 
 
 def _guide(guide: Guide) -> dict[str, object]:
-    """Return the guide: the points at joint 1 = 0, and under `hold` those at an angle it can hold."""
-    return {
-        **_placement(guide, guide.at_zero),
-        "hold": {"joint1": guide.hold.joint1, **_placement(guide, guide.hold)},
-        "tolerance": guide.tolerance,
-    }
+    """Return the guide: everything stands where it is with the joints at `hold`.
 
-
-def _placement(guide: Guide, placement: Placement) -> dict[str, object]:
+    Of a task that is not met there is no tolerance to keep, and nothing to expect of a hand.
+    """
+    placement = guide.hold
     return {
+        "hold": guide.posture,
         "markers": dict(zip(MARKERS, placement.markers, strict=True)),
-        "axis2": {"point": placement.axis_point, "direction": placement.axis_direction},
+        "axis2": {
+            "point": placement.axis_point,
+            "direction": placement.axis_direction,
+            "elevation": placement.elevation,
+            "heading": placement.heading,
+        },
         "centreline": [
             {"name": name, "arc_length": station, "position": position}
             for name, station, position in zip(
                 guide.station_names, guide.stations, placement.centreline, strict=True
             )
         ],
+        "tolerance": guide.tolerance if guide.met else None,
+        "forgiveness": guide.forgiveness,
     }

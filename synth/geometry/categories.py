@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from synth.rounding import Unit, rounded_up
 from synth.sentences import SentenceEnum
 
 if TYPE_CHECKING:
@@ -58,14 +59,24 @@ class CategoryDistances:
     ) -> str:
         """Return a sentence for the user, with tolerances as in `classify`.
 
-        For example "general (PUMA-like within 3.1 mm, SCARA within 12.4 deg, spherical within 40.2 mm)".
+        For example "general; 434.1 mm from PUMA-like, 37.3 deg from SCARA, 376.0 mm from spherical", or
+        "SCARA to 0.1 deg; 96.0 mm from PUMA-like, 96.0 mm from spherical".
         """
         category = classify(self, length_tolerance, angle_tolerance)
-        return (
-            f"{category.value} (PUMA-like within {1e3 * self.puma:.1f} mm, "
-            f"SCARA within {math.degrees(self.scara):.1f} deg, "
-            f"spherical within {1e3 * self.spherical:.1f} mm)"
+        from_each = {
+            Category.PUMA: ("PUMA-like", self.puma, Unit.MM),
+            Category.SCARA: ("SCARA", self.scara, Unit.DEG),
+            Category.SPHERICAL: ("spherical", self.spherical, Unit.MM),
+        }
+        own = category.value
+        if category in from_each:
+            name, distance, unit = from_each.pop(category)
+            own = f"{name} to {rounded_up(distance, unit)} {unit.symbol}"
+        others = (
+            f"{unit.of(distance):.1f} {unit.symbol} from {name}"
+            for name, distance, unit in from_each.values()
         )
+        return f"{own}; {', '.join(others)}"
 
 
 def classify(

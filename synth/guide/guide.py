@@ -9,18 +9,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import FloatArray, frozen
+from synth.guide.posture import HoldPosture, hold_posture
 from synth.guide.sensitivity import ShapeTolerance, shape_tolerance
 from synth.robot import BasePose
+from synth.synthesis import MOST_MOTIONS, hand_forgiveness, motions
 
 if TYPE_CHECKING:
-    from synth.robot import Arm, Interval, LinkShape
-    from synth.synthesis.solution import Design
+    from synth.robot import Arm, LinkShape
+    from synth.synthesis import Design, Forgiveness, Motion
     from synth.task import Task
 
 MARKERS = ("P1", "P2", "P3", "P4")
 LINK_END = "END"
 SPACING = 0.050  # m, of the points on the centreline; of a very long link a multiple of it
 _MOST_STATIONS = 100  # more than that nobody holds a link to
+_VERTICAL = 1e-9  # of a direction's horizontal part: no heading below
 _LEAST_GAP = 0.010  # m; a point nearer to the link's end than this would only be mistaken for it
 
 
@@ -42,6 +45,18 @@ class Placement:
     axis_direction: FloatArray
     centreline: FloatArray
 
+    @property
+    def elevation(self) -> float:
+        """Angle of axis 2 over the horizontal, from P3 towards P4, in [-pi/2, pi/2], rad."""
+        x, y, z = self.axis_direction
+        return math.atan2(z, math.hypot(x, y))
+
+    @property
+    def heading(self) -> float:
+        """Direction of axis 2 seen from above, from x towards y, in (-pi, pi], rad; NaN if it is vertical."""
+        x, y, _ = self.axis_direction
+        return math.nan if math.hypot(x, y) < _VERTICAL else math.atan2(y, x)
+
     def __post_init__(self) -> None:
         for name in ("markers", "axis_point", "axis_direction", "centreline"):
             object.__setattr__(self, name, frozen(getattr(self, name)))
@@ -52,23 +67,44 @@ class Guide:
     """What a person needs to bend the link into its shape, and to tell whether it is right.
 
     Attributes:
-        at_zero: Where everything stands at joint 1 = 0, a posture that the joint may not have.
-        hold: The same with joint 1 at an angle that it can hold: 0 within its limits, or else the
-            middle of its range. This is what the operator measures against.
+        posture: The joint angles to hold while bending.
+        hold: Where everything stands there. This is what the operator measures against.
         stations: Arc lengths s from P2 of the points on the centreline, shape (k,), m: multiples of
             50 mm, 100 at most, and the link's end.
-        link: The shape of the link, with its length, smallest bend radius and total bend.
-        tolerance: How precisely axis 2 must stand.
+        arm: The robot in the shape.
+        cut: Distances (d35, d45) to cut the rigid link to, m, where the synthesis chose them; else None.
+        met: Whether the shape meets the task. If not, nobody is to bend the link to it: what is said of it is
+            no instruction.
+        tolerance: How precisely axis 2 must stand; NaN for a task that is not met.
+        forgiveness: What becomes of the task when a hand as published bends the link; None if it is not met.
+        ways: How the arm gets from each target to the next; empty if it is not met, or of many targets.
     """
 
-    at_zero: Placement
+    posture: HoldPosture
     hold: Placement
     stations: FloatArray
-    link: LinkShape
+    arm: Arm
+    cut: tuple[float, float] | None
+    met: bool
     tolerance: ShapeTolerance
+    forgiveness: Forgiveness | None
+    ways: tuple[Motion, ...]
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "stations", frozen(self.stations))
+
+    @property
+    def link(self) -> LinkShape:
+        """The shape of the link, with its length, smallest bend radius and total bend."""
+        return self.arm.shape
+
+    @property
+    def marker_distances(self) -> dict[str, float]:
+        """The distances that a tape measures: "d13", "d14", "d23" and "d24", m."""
+        markers = self.hold.markers
+        return {
+            f"d{i + 1}{j + 1}": float(np.linalg.norm(markers[i] - markers[j])) for i in (0, 1) for j in (2, 3)
+        }
 
     @property
     def station_names(self) -> tuple[str, ...]:
@@ -88,14 +124,18 @@ def make_guide(task: Task, design: Design) -> Guide:
         task: What is asked: its targets decide how precisely the shape must be held.
         design: The shape, and what the independent check says of it.
     """
-    arm = design.arm
-    stations = _stations(arm.shape.length)
+    arm, met = design.arm, design.verification.found
+    stations, posture = _stations(arm.shape.length), hold_posture(task, arm)
     return Guide(
-        at_zero=place(arm, stations, 0.0),
-        hold=place(arm, stations, hold_angle(arm.robot.joint_limits.base)),
+        posture=posture,
+        hold=place(arm, stations, posture.joint1),
         stations=stations,
-        link=arm.shape,
+        arm=arm,
+        cut=None if task.robot.rigid_link.is_fixed else (arm.d35, arm.d45),
+        met=met,
         tolerance=shape_tolerance(task, design),
+        forgiveness=hand_forgiveness(task, arm) if met else None,
+        ways=motions(task, design) if met and len(task.targets) <= MOST_MOTIONS else (),
     )
 
 
@@ -114,11 +154,6 @@ def place(arm: Arm, stations: FloatArray, joint1: float) -> Placement:
     placed = arm.base.to_task(turn.to_task(points))
     direction = arm.base.rotation @ turn.rotation @ rotation[:, 0]
     return Placement(joint1, placed[:4], placed[4], direction, placed[5:])
-
-
-def hold_angle(limits: Interval) -> float:
-    """Return an angle, rad, that joint 1 can hold: 0 within its limits, or the middle of its range."""
-    return 0.0 if limits.contains(0.0) else limits.middle
 
 
 def _stations(length: float) -> FloatArray:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.robot import BasePose
+from synth.synthesis.displaced import misses_displaced, rotations
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
@@ -20,9 +21,14 @@ if TYPE_CHECKING:
 _ON_THE_SURFACE = 1e-6  # m
 _AT_A_LIMIT = 1e-6  # rad
 _WHOLE_TURN = 2.0 * math.pi - 1e-9  # rad
-# A tilt that turns P5 along the surface is bounded by nothing in first order; a right angle is no small
-# error any more.
-_NO_RATE, _LARGEST_TILT = 1e-12, 0.5 * math.pi  # m/rad, rad
+# A tilt that turns P5 along the surface is bounded by nothing in first order; nobody is off by more than
+# this, and a first order says nothing of it.
+_NO_RATE = 1e-12  # m/rad
+LARGEST_TILT = math.radians(10.0)
+# The first order is tried: errors of the size that it allows, in this many directions, on the targets that
+# are lost first, are made smaller by the share of the slack that they take, again and again.
+_DIRECTIONS, _TRIED_TARGETS, _TRIALS = 96, 100, 4
+_NO_SLACK = 1e-12  # m
 # Velocities of P5 this nearly parallel are those of the rim of the workspace, which P5 can leave in two
 # directions; on a circle of 0.5 m it begins 0.03 mm inside the rim.
 _NEARLY_SINGULAR = 1e-2
@@ -30,19 +36,19 @@ _NEARLY_SINGULAR = 1e-2
 
 @dataclass(frozen=True)
 class ShapeTolerance:
-    """How far axis 2 may be off before a target that is reached now is reached no more.
+    """How far axis 2 may be off before a target is reached no more, for a shape that reaches them all.
 
     Each number is the size of the smallest error that, alone and in its worst direction, brings some
     target now within its tolerance to the edge of it, with joints 1 and 2 free to make the best of the
     new shape (near the posture they have now). Both effects are linear to first order, so an error of
-    both kinds is harmless if each is at most half of its number. Both are NaN if no target is within
-    its tolerance.
+    both kinds is harmless if each is at most half of its number. Where errors of that size, tried in many
+    directions, lose a target all the same, the numbers are smaller. Both are NaN if a target is missed.
 
     Attributes:
         position: Shift of axis 2, its direction kept, m. No first order here: a shift by d moves the
             whole workspace surface by d, hence position = min (tolerance - miss).
         position_target: Name of the target that is lost first, or empty.
-        direction: Tilt of axis 2 about the link's end, rad; to first order, and at most pi/2.
+        direction: Tilt of axis 2 about the link's end, rad; to first order, and at most 10 deg.
         direction_target: Name of the target that is lost first, or empty.
     """
 
@@ -53,35 +59,54 @@ class ShapeTolerance:
 
 
 def shape_tolerance(task: Task, design: Design) -> ShapeTolerance:
-    """Return how precisely axis 2 must stand for the targets that a shape reaches.
+    """Return how precisely axis 2 must stand for a shape that reaches every target to do so.
 
     Args:
         task: What is asked.
         design: The shape and its misses. That the end effector stays above the floor is not counted.
     """
     check, arm = design.verification, design.arm
-    within = np.flatnonzero(check.within_tolerance)
-    if not len(within):
+    if not check.found:
         return ShapeTolerance()
     slack = task.tolerances - check.misses
-    within = within[np.argsort(slack[within], kind="stable")]
+    within = np.argsort(slack, kind="stable")
     tilt, tilted = math.inf, within[0]
     # No tilt moves P5 faster than at its distance from the link's end.
     lever = float(np.linalg.norm(arm.kinematics.forward(0.0, 0.0) - arm.end_frame[1]))
     for index in within.tolist():
-        if slack[index] >= min(tilt, _LARGEST_TILT) * lever:
+        if slack[index] >= min(tilt, LARGEST_TILT) * lever:
             break
         rate = tilt_rate(arm, task.table.positions[index], check.joints[index])
-        bound = min(slack[index] / max(rate, _NO_RATE), _LARGEST_TILT)
+        bound = min(slack[index] / max(rate, _NO_RATE), LARGEST_TILT)
         if bound < tilt:
             tilt, tilted = bound, index
     first = int(within[0])
-    return ShapeTolerance(
-        float(slack[first]),
-        task.targets[first].name,
-        float(min(tilt, _LARGEST_TILT)),
-        task.targets[tilted].name,
-    )
+    position, direction = _tried(task, design, float(slack[first]), float(min(tilt, LARGEST_TILT)))
+    return ShapeTolerance(position, task.targets[first].name, direction, task.targets[tilted].name)
+
+
+def _tried(task: Task, design: Design, position: float, direction: float) -> tuple[float, float]:
+    """Return errors of axis 2 no larger than these, m and rad, that lose no target in any direction tried."""
+    check, arm = design.verification, design.arm
+    slack = task.tolerances - check.misses
+    barely = np.argsort(slack, kind="stable")[:_TRIED_TARGETS]
+    angles = np.linspace(0.0, 2.0 * math.pi, _DIRECTIONS, endpoint=False)[:, None]
+    across = np.cos(angles) * arm.end_frame[0][:, 1] + np.sin(angles) * arm.end_frame[0][:, 2]
+    around = np.random.default_rng(0).normal(size=(_DIRECTIONS, 3))
+    around /= np.linalg.norm(around, axis=1, keepdims=True)
+
+    def used(shifts: FloatArray, turns: FloatArray) -> float:
+        """Return the largest share of its slack that an error takes from a target."""
+        lost = misses_displaced(arm, task.positions[barely], shifts, turns) - check.misses[barely]
+        return float(np.max(lost / np.maximum(slack[barely], _NO_SLACK)))
+
+    for _ in range(_TRIALS):
+        share = used(position * around, np.broadcast_to(np.eye(3), (_DIRECTIONS, 3, 3)))
+        position /= max(share, 1.0)
+    for _ in range(_TRIALS):
+        share = used(np.zeros((_DIRECTIONS, 3)), rotations(direction * across))
+        direction /= max(share, 1.0)
+    return position, direction
 
 
 def tilt_rate(arm: Arm, target: FloatArray, joints: FloatArray) -> float:

@@ -1,4 +1,7 @@
-"""What the terminal shows: the summary of a result, and the guide as a table. Millimetres and degrees."""
+"""What the terminal shows of a result: what was found or missed, why, and what a person then does.
+
+Millimetres and degrees. ✓ and ✗ stand where the terminal may colour a line or put other signs.
+"""
 
 from __future__ import annotations
 
@@ -8,76 +11,115 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.guide.guide import SPACING, make_guide
+from synth.guide.instructions import base_sentence, hand_sentence, instructions, link_sentence
 from synth.robot import MOST_CLEARANCE
-from synth.synthesis import motions
+from synth.rounding import rounded_down, rounded_up
+from synth.task import DEFAULT_TOLERANCE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from synth.guide.guide import Guide
-    from synth.robot import LinkShape
     from synth.synthesis.solution import Design, Solution, TargetResult
 
+FOUND, MISSED, BULLET = "✓", "✗", "•"
 _MOST_TARGETS = 10
-_STRAIGHT = 100.0  # m, a bend radius that no eye and no hand can tell from none
+_MOST_REASONS = 5
+_MOST_WAYS = 10
 
 
-def summary_text(solution: Solution) -> str:
-    """Return a result as a headline and a few bullets, for any status.
+def summary_text(solution: Solution, guide: Guide | None = None) -> str:
+    """Return a result as a headline, what is known of it, and a few bullets, for any status.
 
     Args:
         solution: What a synthesis found, if only the reasons why it found nothing.
+        guide: The guide to its first shape, or None if there is no shape.
 
     Returns:
         Lines without a line break at the end.
     """
-    headline = f"{solution.task.name}: {solution.status.sentence}"
-    bullets = list(solution.reasons)
+    headline = f"{FOUND if solution.found else MISSED} {headline_of(solution)}"
+    lines = [headline, "=" * min(len(headline), 79), *map(_bullet, knowledge(solution))]
     if solution.designs:
-        arm = solution.robot
-        bullets += [
-            *_target_lines(solution.targets),
-            *_motion_lines(solution),
-            arm.category_distances.describe(),
-            link_sentence(arm.shape),
-        ]
-        if len(solution.designs) > 1:
-            bullets.append(f"{len(solution.designs)} distinct shapes, the best one shown")
+        lines += _target_lines(solution.targets)
     else:
-        bullets.append(f"{len(solution.task.targets)} targets asked for, none reached: there is no shape")
-    if solution.bound is not None and solution.bound.sentence not in solution.reasons:
-        bullets.append(solution.bound.sentence)
-    bullets += [f"{release.sentence} would do" for release in solution.releases]
-    bullets += solution.notes
+        lines.append(
+            _bullet(f"{len(solution.task.targets)} targets asked for, none reached: there is no shape")
+        )
+    bullets = [] if guide is None or not guide.met else _shape_bullets(guide)
+    if len(solution.designs) > 1:
+        best = ", the best" if solution.shape == 1 else ""
+        bullets.append(
+            f"{len(solution.designs)} distinct shapes; this is shape {solution.shape}{best} "
+            "(--all lists them, --shape K shows another)"
+        )
     starts = "1 start" if solution.starts == 1 else f"{solution.starts} starts"
     bullets.append(f"seed {solution.seed}, {starts}, {solution.time.total:.2f} s")
-    return "\n".join([headline, "=" * min(len(headline), 79), *(f"• {bullet}" for bullet in bullets)])
+    return "\n".join([*lines, *map(_bullet, bullets)])
+
+
+def headline_of(solution: Solution) -> str:
+    """Return the task's name and how it ended."""
+    return f"{solution.task.name}: {solution.status.told(with_shape=bool(solution.designs))}"
+
+
+def knowledge(solution: Solution, most: int = _MOST_REASONS) -> list[str]:
+    """Return why no more was found, what is proven, and what would help: of many reasons the first.
+
+    Args:
+        solution: The result.
+        most: How many reasons are told.
+    """
+    proof = proof_sentence(solution)
+    told = [*reasons_told(solution, most), *([proof] if proof else [])]
+    return [*told, *(f"{release.sentence} would do" for release in solution.releases), *solution.notes]
+
+
+def reasons_told(solution: Solution, most: int) -> list[str]:
+    """Return why no more was found, but for what `proof_sentence` says: of many the first, counted."""
+    bound = solution.bound
+    reasons = [reason for reason in solution.reasons if bound is None or reason != bound.sentence]
+    if len(reasons) <= most:
+        return reasons
+    return [*reasons[:most], f"and {len(reasons) - most} more of this kind"]
+
+
+def proof_sentence(solution: Solution) -> str:
+    """Return what `--prove` proved, of the shape that is shown; empty if it was not asked."""
+    bound = solution.bound
+    if bound is None:
+        return ""
+    if not solution.designs:
+        return bound.sentence
+    weights = bound.tightest_tolerance / solution.task.tolerances
+    worst = float(np.max(solution.best.verification.misses * weights))
+    return bound.sentence_of_shape(worst)
 
 
 def guide_text(guide: Guide | None, solution: Solution) -> str:
-    """Return the summary of a result and below it the table that a person bends the link by.
+    """Return the summary of a result and, if the task is met, what a person does to bend the link.
 
     Args:
-        guide: The guide to the solution's best shape, or None if there is no shape.
+        guide: The guide to the solution's first shape, or None if there is no shape.
         solution: The result.
 
     Returns:
         Lines without a line break at the end; the table has the points at `guide.hold`.
     """
-    summary = summary_text(solution)
-    if guide is None:
+    summary = summary_text(solution, guide)
+    if guide is None or not guide.met:
         return summary
     rows = [f"{'':4}{'x':>10}{'y':>10}{'z':>10}"]
     rows += [
         f"{name:<5}" + "".join(f"{1e3 * value:z10.1f}" for value in point)[1:]
         for name, point in guide.points(guide.hold).items()
     ]
-    lines = [hold_sentence(guide), points_sentence(guide), "", *rows, "", axis_sentence(guide)]
-    return "\n".join([summary, "", *lines, *tolerance_sentences(guide)])
+    steps = [f"{number}. {step}" for number, step in enumerate(_steps(guide), start=1)]
+    return "\n".join([summary, "", *steps, "", points_sentence(guide), "", *rows])
 
 
 def solution_text(solution: Solution, *, alternatives: bool = False) -> str:
-    """Return all that the terminal shows of a result: the summary, and the guide if there is a shape.
+    """Return all that the terminal shows of a result: the summary, and the guide if the task is met.
 
     Args:
         solution: The result.
@@ -89,16 +131,18 @@ def solution_text(solution: Solution, *, alternatives: bool = False) -> str:
     guide = make_guide(solution.task, solution.designs[0]) if solution.designs else None
     lines = [guide_text(guide, solution)]
     if alternatives and solution.designs[1:]:
-        lines += ["", "Other shapes, the next best first:"]
+        lines += ["", "Other shapes, the best first:"]
         lines += [
-            f"{number:>3}  {_shape_line(design)}" for number, design in enumerate(solution.designs[1:], 2)
+            f"{number:>3}  {_shape_line(design)}"
+            for number, design in zip(solution.shape_numbers[1:], solution.designs[1:], strict=True)
         ]
     return "\n".join(lines)
 
 
-def hold_sentence(guide: Guide) -> str:
-    """Return what to do with joint 1 while the link is bent."""
-    return f"Set joint 1 to {math.degrees(guide.hold.joint1):z.1f} deg and hold it there."
+def tolerance_told(tolerance: float, digits: int = 3) -> str:
+    """Return a target's tolerance, marked if it is the one that a task gets which states none."""
+    default = ", the default" if tolerance == DEFAULT_TOLERANCE else ""
+    return f"{rounded_down(tolerance, digits=digits)} mm{default}"
 
 
 def points_sentence(guide: Guide) -> str:
@@ -109,48 +153,34 @@ def points_sentence(guide: Guide) -> str:
     return f"Points in the task frame, mm, on the link every {1e3 * spacing:.0f} mm:"
 
 
-def axis_sentence(guide: Guide) -> str:
-    """Return where axis 2 is at the hold angle."""
-    x, y, z = guide.hold.axis_direction
-    return f"Axis 2 runs through END, P3 and P4 in the direction ({x:z.4f}, {y:z.4f}, {z:z.4f})."
+def clearance_told(clearance: float) -> str:
+    """Return a clearance, rounded down, which is told no farther than it was looked for."""
+    least = clearance >= MOST_CLEARANCE - 1e-9
+    return f"{rounded_down(clearance)} mm" + (" at least" if least else "")
 
 
-def link_sentence(shape: LinkShape) -> str:
-    """Return the numbers of a link's shape, without a full stop."""
-    radius = "straight"
-    if shape.min_bend_radius < _STRAIGHT:
-        radius = f"smallest bend radius {1e3 * shape.min_bend_radius:.1f} mm"
-    bend = math.degrees(shape.total_bend)
-    return f"link {1e3 * shape.length:.1f} mm long, {radius}, {bend:.1f} deg of bend in all"
+def _bullet(line: str) -> str:
+    return f"{BULLET} {line}"
 
 
-def tolerance_sentences(guide: Guide) -> tuple[str, ...]:
-    """Return how precisely the shape must be held, as sentences for the operator."""
-    tolerance = guide.tolerance
-    if math.isnan(tolerance.position):
-        return ("No target is within its tolerance, so there is none to keep: come as close as you can.",)
-    tilt = math.degrees(tolerance.direction)
-    p3, p4 = guide.hold.markers[2:]
-    marker = 1e3 * float(np.linalg.norm(p4 - p3)) * tolerance.direction
-    shift = f"{1e3 * tolerance.position:.2f} mm ({tolerance.position_target})"
-    both = f"{shift} and {tilt:.2f} deg ({tolerance.direction_target})"
-    return (
-        f"Hold axis 2 within {both}; within half of each if both are off.",
-        f"P3 or P4 off by {marker:.2f} mm across the axis is a tilt of {tilt:.2f} deg.",
-    )
+def _steps(guide: Guide) -> list[str]:
+    """Return the steps without what stands in the summary already."""
+    told = [] if guide.forgiveness is None else [hand_sentence(guide.forgiveness)]
+    return [base_sentence(guide.arm.base), *(step for step in instructions(guide) if step not in told)]
+
+
+def _shape_bullets(guide: Guide) -> list[str]:
+    bullets = [motion.describe() for motion in guide.ways[:_MOST_WAYS]]
+    if len(guide.ways) > _MOST_WAYS:
+        bullets.append(f"{len(guide.ways)} ways from target to target in all: see solution.json")
+    bullets += [guide.arm.category_distances.describe(), link_sentence(guide.link)]
+    return bullets if guide.forgiveness is None else [*bullets, hand_sentence(guide.forgiveness)]
 
 
 def _shape_line(design: Design) -> str:
     """Return one of several shapes in a line."""
-    worst = 1e3 * float(design.verification.misses.max())
-    return f"worst miss {worst:8.3f} mm  {link_sentence(design.arm.shape)}, {design.arm.category.value}"
-
-
-def _motion_lines(solution: Solution) -> list[str]:
-    """Return a line for each way from a target to the next, where they are few enough to be read."""
-    if not solution.found or len(solution.task.targets) > _MOST_TARGETS:
-        return []
-    return [motion.describe() for motion in motions(solution.task, solution.best)]
+    worst = rounded_up(float(design.verification.misses.max()), digits=3)
+    return f"worst miss {worst:>8} mm  {link_sentence(design.arm.shape)}, {design.arm.category.value}"
 
 
 def _target_lines(targets: Sequence[TargetResult]) -> list[str]:
@@ -158,21 +188,18 @@ def _target_lines(targets: Sequence[TargetResult]) -> list[str]:
     lines = []
     if len(targets) > _MOST_TARGETS:
         reached = sum(target.within_tolerance for target in targets)
-        lines = [f"{reached} of {len(targets)} targets are within tolerance; the {_MOST_TARGETS} worst:"]
+        lines = [
+            _bullet(f"{reached} of {len(targets)} targets are within tolerance; the {_MOST_TARGETS} worst:")
+        ]
         targets = sorted(targets, key=lambda target: -target.miss / target.tolerance)[:_MOST_TARGETS]
     width = max(len(target.name) for target in targets)
     for target in targets:
         theta1, theta2 = (math.degrees(angle) for angle in target.joints)
-        clear = "" if math.isinf(target.clearance) else f"  clear by {_clearance(target.clearance)}"
+        clear = "" if math.isinf(target.clearance) else f"  clear by {clearance_told(target.clearance)}"
+        sign, word = (FOUND, "reached") if target.within_tolerance else (MISSED, "MISSED")
         lines.append(
-            f"{target.name:<{width}}  {'reached' if target.within_tolerance else 'MISSED':7}  "
-            f"miss {1e3 * target.miss:8.3f} of {1e3 * target.tolerance:.3f} mm  "
+            f"{sign} {target.name:<{width}}  {word:7}  "
+            f"miss {rounded_up(target.miss, digits=3):>8} of {tolerance_told(target.tolerance)}  "
             f"joints {theta1:z7.2f}, {theta2:z7.2f} deg{clear}"
         )
     return lines
-
-
-def _clearance(clearance: float) -> str:
-    """Return a clearance, which is told no farther than it was looked for."""
-    least = clearance >= MOST_CLEARANCE - 1e-9
-    return f"{1e3 * clearance:.1f} mm" + (" at least" if least else "")

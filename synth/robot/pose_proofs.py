@@ -34,6 +34,7 @@ import numpy as np
 
 from synth.robot.hardware import Interval
 from synth.robot.reach import LinkReach
+from synth.rounding import Unit, at_least, rounded_down
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -71,11 +72,11 @@ def why_no_link(link: MalleableLink, position: ArrayLike, axis: ArrayLike) -> st
     u = u / np.linalg.norm(u)
     short = -float(LinkReach(link).margin(p))
     if short > _ROUNDING:
-        return f"{_the_link(link)} ends at least {1e3 * short:.1f} mm away, whatever its direction there"
+        return f"{_the_link(link)} ends {at_least(short)} away, whatever its direction there"
     # The nearest tangent across u is as far from z as u is from the horizontal plane.
     least, most = math.asin(min(abs(u[2]), 1.0)), _largest_turn(link)
     if least > most + _ROUNDING:
-        return _too_little("turn", math.degrees(least), math.degrees(most), "deg")
+        return _too_little("turn", least, most, Unit.DEG)
     short = _Tangents(link, p, u).shortfall(share=0.8)
     if short <= _ROUNDING:
         return ""
@@ -90,12 +91,12 @@ def why_no_link(link: MalleableLink, position: ArrayLike, axis: ArrayLike) -> st
     if bend < unlimited:
         needed = _needed(bending, bend, unlimited, p, u)
         if needed is not None:
-            return _too_little("turn", math.degrees(needed), math.degrees(bend), "deg")
+            return _too_little("turn", needed, bend, Unit.DEG)
     longest = link.length.upper
     needed = _needed(as_long_as, longest, _LONGEST * longest, p, u)
     if needed is not None:
-        return _too_little("be", 1e3 * needed, 1e3 * longest, "mm", " long")
-    return f"{_the_link(link)} ends at least {1e3 * short:.1f} mm away with axis 2 in this direction"
+        return _too_little("be", needed, longest, Unit.MM, " long")
+    return f"{_the_link(link)} ends {at_least(short)} away with axis 2 in this direction"
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,11 +214,12 @@ def _spread(count: int) -> FloatArray:
     return np.column_stack([rho * np.cos(turn), rho * np.sin(turn), z])
 
 
-def _too_little(verb: str, needed: float, limit: float, unit: str, what: str = "") -> str:
+def _too_little(verb: str, needed: float, limit: float, unit: Unit, what: str = "") -> str:
     """Return by how much a limit is too little, with as many digits as tell the two numbers apart."""
-    digits = next((n for n in range(1, 6) if f"{needed:.{n}f}" != f"{limit:.{n}f}"), 6)
-    more, most = f"{needed:.{digits}f}", f"{limit:.{digits}f}"
-    return f"the link would have to {verb} more than {more} {unit}{what}; {most} {unit} is its limit"
+    told = [(rounded_down(needed, unit, n), f"{unit.of(limit):.{n}f}") for n in range(1, 7)]
+    more, most = next((pair for pair in told if float(pair[0]) > float(pair[1])), told[-1])
+    symbol = unit.symbol
+    return f"the link would have to {verb} more than {more} {symbol}{what}; {most} {symbol} is its limit"
 
 
 def _the_link(link: MalleableLink) -> str:

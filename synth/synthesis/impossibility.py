@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.robot import LinkReach
+from synth.rounding import at_least, at_most
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -54,7 +55,7 @@ def why_impossible(task: Task) -> tuple[str, ...]:
     """
     reasons = []
     if task.floor is not None and task.floor > task.robot.d12:
-        reasons.append(f"the link starts at P2, {1e3 * (task.floor - task.robot.d12):.1f} mm below the floor")
+        reasons.append(f"the link starts at P2, {at_least(task.floor - task.robot.d12)} below the floor")
     reasons += _in_the_way(task)
     longest = longest_rigid_link(task.robot)
     positions, tolerances, targets = task.positions, task.tolerances, task.targets
@@ -69,13 +70,13 @@ def why_impossible(task: Task) -> tuple[str, ...]:
         name, distance = targets[index].name, float(beyond[index])
         if out_of_reach[index]:
             reasons.append(
-                f"{name} is {1e3 * distance:.1f} mm from wherever the malleable link can end, "
-                f"and the rigid link reaches at most {1e3 * longest:.1f} mm from there: "
-                f"it misses by at least {1e3 * (distance - longest):.1f} mm"
+                f"{name} is {at_least(distance)} from wherever the malleable link can end, "
+                f"and the rigid link reaches {at_most(longest)} from there: "
+                f"it misses by {at_least(distance - longest)}"
             )
         else:
             reasons.append(
-                f"{name} is {1e3 * (floor - positions[index, 2]):.1f} mm below the floor, and the "
+                f"{name} is {at_least(floor - positions[index, 2])} below the floor, and the "
                 "end effector stays above it"
             )
     return tuple(reasons)
@@ -93,11 +94,11 @@ def _in_the_way(task: Task) -> list[str]:
     for obstacle, solid in zip(task.obstacles, task.solids, strict=True):
         depth = -float(solid.distance(p2))
         if depth > _ROUNDING:
-            reasons.append(f"the link starts at P2, {1e3 * depth:.1f} mm inside {obstacle.name}")
+            reasons.append(f"the link starts at P2, {at_least(depth)} inside {obstacle.name}")
         depths = rod_radius - solid.distance(task.positions)
         reasons += [
             f"{task.targets[index].name} is in {obstacle.name}: "
-            f"the end effector would be {1e3 * depths[index]:.1f} mm inside"
+            f"the end effector would be {at_least(depths[index])} inside"
             for index in np.flatnonzero(depths > task.tolerances + _ROUNDING).tolist()
         ]
     return reasons

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from synth.geometry import Box
 from synth.robot import Interval, JointLimits
+from synth.rounding import Unit, rounded_down, rounded_up
 from synth.task import Obstacle, Topology
 
 if TYPE_CHECKING:
@@ -50,26 +51,26 @@ def limits_of(task: Task) -> Iterator[Limit]:
     yield Limit(
         "link length", high, high,
         lambda more: with_link(replace(link, length=Interval(low, high + more))),
-        lambda more: f"a link {1e3 * more:.1f} mm longer, up to {1e3 * (high + more):.1f} mm",
+        lambda more: f"a link {rounded_up(more)} mm longer, up to {rounded_up(high + more)} mm",
     )  # fmt: skip
     yield Limit(
         "link length", low, (1.0 - _LEAST_PART) * low,
         lambda less: with_link(replace(link, length=Interval(low - less, high))),
-        lambda less: f"a link {1e3 * less:.1f} mm shorter, down to {1e3 * (low - less):.1f} mm",
+        lambda less: f"a link {rounded_up(less)} mm shorter, down to {rounded_down(low - less)} mm",
     )  # fmt: skip
     radius = link.min_bend_radius
     yield Limit(
         "bend radius", radius, (1.0 - _LEAST_PART) * radius,
         lambda less: with_link(replace(link, min_bend_radius=radius - less)),
-        lambda less: f"a bend radius {1e3 * less:.1f} mm smaller, down to {1e3 * (radius - less):.1f} mm",
+        lambda less: f"a bend radius {rounded_up(less)} mm smaller, down to {rounded_down(radius - less)} mm",
     )  # fmt: skip
     bend = link.max_total_bend
     if math.isfinite(bend):
         yield Limit(
             "total bend", bend, 2.0 * math.pi,
             lambda more: with_link(replace(link, max_total_bend=bend + more)),
-            lambda more: f"{math.degrees(more):.1f} deg more of bend in all, "
-            f"up to {math.degrees(bend + more):.1f} deg",
+            lambda more: f"{rounded_up(more, Unit.DEG)} deg more of bend in all, "
+            f"up to {rounded_up(bend + more, Unit.DEG)} deg",
         )  # fmt: skip
     for name, key, interval in (("joint 1", "base", limits.base), ("joint 2", "second", limits.second)):
         room = math.pi - 0.5 * (interval.upper - interval.lower)
@@ -79,21 +80,21 @@ def limits_of(task: Task) -> Iterator[Limit]:
                 lambda more, key=key, interval=interval: replace(  # type: ignore[misc]
                     task, robot=replace(robot, joint_limits=replace(
                         limits, **{key: Interval(interval.lower - more, interval.upper + more)}))),
-                lambda more, name=name: f"{math.degrees(more):.1f} deg more of {name} at each end",  # type: ignore[misc]
+                lambda more, name=name: f"{rounded_up(more, Unit.DEG)} deg more of {name} at each end",  # type: ignore[misc]
             )  # fmt: skip
     if task.floor is not None:
         floor, depth = task.floor, robot.d12 + high
         yield Limit(
             "floor", high, depth,
             lambda lower: replace(task, floor=floor - lower),
-            lambda lower: f"a floor {1e3 * lower:.1f} mm lower",
+            lambda lower: f"a floor {rounded_up(lower)} mm lower",
         )  # fmt: skip
     for index, obstacle in enumerate(task.obstacles):
         most = -_deepest(obstacle.solid)
         yield Limit(
             f"obstacle: {obstacle.name}", high, most,
             lambda less, index=index: _with_less_of(task, index, less),  # type: ignore[misc]
-            lambda less, name=obstacle.name: f"{name} {1e3 * less:.1f} mm smaller all round",  # type: ignore[misc]
+            lambda less, name=obstacle.name: f"{name} {rounded_up(less)} mm smaller all round",  # type: ignore[misc]
         )  # fmt: skip
 
 

@@ -24,10 +24,16 @@ class Status(SentenceEnum):
     """How a synthesis ended."""
 
     FOUND = "found", "every target is within its tolerance"
-    BEST_EFFORT = "best_effort", "no shape was found that reaches every target; this is the nearest found"
+    BEST_EFFORT = "best_effort", "no shape was found that reaches every target"
     PROVEN_IMPOSSIBLE = "proven_impossible", "no shape of this robot can do the task"
-    LIMIT = "limit", "stopped before the search was complete; this is the best shape so far"
+    LIMIT = "limit", "stopped before the search was complete"
     FAILED = "failed", "the solver broke down"
+
+    def told(self, *, with_shape: bool) -> str:
+        """Return the sentence, with what the shape shown is, if there is one."""
+        if with_shape and self in (Status.BEST_EFFORT, Status.LIMIT):
+            return f"{self.sentence}; what follows is of the nearest shape found"
+        return self.sentence
 
 
 class NotFoundError(SynthError):
@@ -118,6 +124,7 @@ class Solution:
         releases: What would release a task that was not met; empty before `explain` has looked.
         notes: What else is to be said: what was left undone for lack of time, what `explain` found.
         breakdown: The traceback of what broke off the search and nobody foresaw; empty mostly.
+        shape: Which of the shapes, counted from the best, `designs` begins with; see `showing`.
     """
 
     task: Task
@@ -132,6 +139,13 @@ class Solution:
     releases: tuple[Release, ...] = ()
     notes: tuple[str, ...] = ()
     breakdown: str = ""
+    shape: int = 1
+
+    @property
+    def shape_numbers(self) -> tuple[int, ...]:
+        """The number of each of `designs`, counted from the best."""
+        others = (number for number in range(1, len(self.designs) + 1) if number != self.shape)
+        return (self.shape, *others)
 
     @property
     def found(self) -> bool:

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.errors import SynthError
+from synth.rounding import rounded_up
 from synth.synthesis.exact_starts import exact_designs
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from synth.synthesis.solution import Design, Status
+    from synth.synthesis.solution import Design, Solution, Status
     from synth.task import Task
 
 _REASONS = 3  # of a kind that are told
@@ -20,7 +23,31 @@ _REASONS = 3  # of a kind that are told
 def message(task: Task, status: Status, designs: Sequence[Design], reasons: Sequence[str]) -> str:
     """Return how a search ended in one sentence: its status, what the best shape misses, and why."""
     misses = _what_misses(task, designs[0]) if designs else []
-    return ": ".join(filter(None, [status.sentence, "; ".join([*misses, *reasons])]))
+    headline = status.told(with_shape=bool(designs))
+    return ": ".join(filter(None, [headline, "; ".join([*misses, *reasons])]))
+
+
+def showing(solution: Solution, number: int) -> Solution:
+    """Return a solution that begins with another of its shapes: all that is told is then of that one.
+
+    Args:
+        solution: What a synthesis found, its best shape first.
+        number: Which shape, counted from 1, the best.
+
+    Raises:
+        SynthError: There are not so many.
+    """
+    designs, count = solution.designs, len(solution.designs)
+    if not 1 <= number <= count:
+        are = (
+            "is no shape"
+            if not count
+            else f"{'is 1 shape' if count == 1 else f'are {count} distinct shapes'}"
+        )
+        raise SynthError(f"there is no shape {number} to show: there {are} of this task")
+    ordered = (designs[number - 1], *designs[: number - 1], *designs[number:])
+    told = message(solution.task, solution.status, ordered, solution.reasons)
+    return replace(solution, designs=ordered, shape=number, message=told)
 
 
 def why_no_better(task: Task, designs: Sequence[Design], blocked: Sequence[Design]) -> tuple[str, ...]:
@@ -45,7 +72,8 @@ def _what_misses(task: Task, design: Design) -> list[str]:
     order = np.argsort(-check.misses / task.tolerances)
     order = order[~np.array(check.within_tolerance)[order]]
     sentences = [
-        f"{task.targets[i].name} misses by {1e3 * check.misses[i]:.2f} mm" for i in order[:3].tolist()
+        f"{task.targets[i].name} misses by {rounded_up(check.misses[i], digits=2)} mm"
+        for i in order[:3].tolist()
     ]
     return sentences if len(order) <= 3 else [*sentences, f"and {len(order) - 3} more"]
 

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.rounding import Unit, at_least, rounded_up
 from synth.synthesis.bound.boxes import Boxes
 from synth.synthesis.bound.limits import SLACK
 from synth.synthesis.bound.misses import MissBounds
 from synth.synthesis.bound.promising import Promising
 from synth.synthesis.impossibility import longest_rigid_link
+from synth.task import Topology
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,9 +29,12 @@ if TYPE_CHECKING:
 # Taken off every bound, m for each metre of the robot's size: see "Rounding" in docs/bound.md.
 _ROUNDING = 1e-9
 _BATCH = 512
+_WHOLE_TURN = 2.0 * math.pi - 1e-9  # rad
 _BOXES_AT_MOST = 2_000_000  # open at a time, some 200 bytes each
 # Bounds from this many of the targets hold for all of them.
 _TARGETS = 12
+_TOLD = 1e-6  # m; a smaller bound is no news
+_CLOSED = 2e-4  # m; of a larger gap it is told what it may be due to
 
 
 @dataclass(frozen=True)
@@ -44,12 +49,14 @@ class Bound:
         best_found: The least worst weighted miss of all shapes that were found, m; infinite if none was.
         tightest_tolerance: The tightest tolerance of the targets, m.
         boxes: How many boxes of shapes were looked at.
+        left_out: What the task limits and the proof does not know, in words: the gap may be due to it.
     """
 
     lower_bound: float
     best_found: float
     tightest_tolerance: float
     boxes: int
+    left_out: tuple[str, ...] = ()
 
     @property
     def gap(self) -> float:
@@ -64,13 +71,29 @@ class Bound:
     @property
     def sentence(self) -> str:
         """The same for the user."""
-        # Rounded down, and the gap up, so that the sentence is true, too.
-        lower = math.floor(1e6 * self.lower_bound) / 1e3
-        sentence = f"proven: every shape misses some target by at least {lower:.3f} mm"
-        if math.isinf(self.best_found):
-            return sentence
-        gap = math.ceil(1e6 * self.gap) / 1e3
-        return f"{sentence}; the best found is within {gap:.3f} mm of the best there is"
+        return self._told("the least worst miss found", self.best_found)
+
+    def sentence_of_shape(self, worst: float) -> str:
+        """Return the same of one shape, which need not be that of the least worst miss.
+
+        Args:
+            worst: The worst weighted miss of that shape, m.
+        """
+        return self._told("the worst miss of this shape", worst)
+
+    def _told(self, whose: str, worst: float) -> str:
+        # Bounds rounded down, gaps up: the sentence is to be as true as the numbers.
+        proven = []
+        if self.lower_bound >= _TOLD:
+            proven.append(f"every shape misses some target by {at_least(self.lower_bound, digits=3)}")
+        gap = max(worst - self.lower_bound, 0.0)
+        if math.isfinite(gap):
+            proven.append(f"{whose} is within {rounded_up(gap, digits=3)} mm of the least there is")
+        sentence = f"proven: {'; '.join(proven) or 'nothing yet'}"
+        if self.left_out and _CLOSED < gap < math.inf:
+            may = "they may" if len(self.left_out) > 1 else "it may"
+            sentence += f". The proof leaves out {' and '.join(self.left_out)}; {may} be all that the gap is"
+        return sentence
 
 
 def prove(
@@ -109,7 +132,7 @@ def prove(
     wanted = gap - rounding
     enough = best_found - wanted
     if not enough > 0.0:
-        return Bound(0.0, best_found, tightest, 0)
+        return Bound(0.0, best_found, tightest, 0, _left_out(task))
     if math.isinf(enough):  # nothing was found: then to know that it is impossible is all
         enough = 1.1 * tightest + gap
     chosen = _hardest(task.positions, factors * misses)
@@ -136,7 +159,21 @@ def prove(
             boxes = boxes.take(boxes.bound < enough)
         lower = min(float(boxes.bound.min(initial=enough)), enough)
         watch.tell(worst_miss=best_found, lower_bound=lower, phase="proving")
-    return Bound(max(lower - rounding, 0.0), best_found, tightest, count)
+    return Bound(max(lower - rounding, 0.0), best_found, tightest, count, _left_out(task))
+
+
+def _left_out(task: Task) -> tuple[str, ...]:
+    """Return what the task limits and the proof does not know, in words."""
+    base = task.robot.joint_limits.base
+    turn = base.upper - base.lower
+    words = []
+    if turn < _WHOLE_TURN:
+        words.append(f"that joint 1 turns by {rounded_up(turn, Unit.DEG, 0)} deg only")
+    if task.obstacles:
+        words.append("the obstacles")
+    if task.topology is not Topology.ANY:
+        words.append(f"that the shape shall be {task.topology.value}")
+    return tuple(words)
 
 
 def _hardest(positions: FloatArray, misses: FloatArray) -> NDArray[np.intp]:

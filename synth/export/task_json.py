@@ -1,0 +1,81 @@
+"""The task inside `solution.json`: whole, with its robot as read, in metres and radians.
+
+The keys are those of the task file, without a unit in their names: with them a solution can be loaded and
+verified again with no other file.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.geometry import Box
+
+if TYPE_CHECKING:
+    from synth.robot import Interval, LinkShape, Robot
+    from synth.task import Obstacle, Task
+
+
+def task_to_json(task: Task) -> dict[str, object]:
+    """Return a task as data for `plain`: arrays, mappings and numbers, every default written out."""
+    return {
+        "name": task.name,
+        "robot": _robot(task.robot),
+        "base": task.base,
+        "floor": task.floor,
+        "topology": task.topology.value,
+        "objective": task.objective.value,
+        "targets": [
+            {
+                "name": target.name,
+                "position": target.position,
+                "tolerance": target.tolerance,
+                "weight": target.weight,
+            }
+            for target in task.targets
+        ],
+        "obstacles": [_obstacle(obstacle) for obstacle in task.obstacles],
+        "current": None if task.current is None else {"arcs": arcs_to_json(task.current)},
+    }
+
+
+def arcs_to_json(shape: LinkShape) -> list[object]:
+    """Return the arcs of a link's shape, from P2 to its end: curvatures in 1/m, lengths in m."""
+    return [
+        {"curvature": curvature, "length": length}
+        for curvature, length in zip(shape.curvatures, shape.lengths, strict=True)
+    ]
+
+
+def _robot(robot: Robot) -> dict[str, object]:
+    link, rigid, limits = robot.link, robot.rigid_link, robot.joint_limits
+    return {
+        "name": robot.name,
+        "d12": robot.d12,
+        "link": {
+            "length": _interval(link.length),
+            "min_bend_radius": link.min_bend_radius,
+            "diameter": link.diameter,
+            "max_total_bend": link.max_total_bend,  # null: no limit
+        },
+        "tip_offset": robot.tip_offset,
+        "d34": robot.d34,
+        "rigid_link": {"d35": _interval(rigid.d35), "d45": _interval(rigid.d45), "diameter": rigid.diameter},
+        "joint_limits": {"base": _interval(limits.base), "second": _interval(limits.second)},
+    }
+
+
+def _interval(interval: Interval) -> list[float]:
+    return [interval.lower, interval.upper]
+
+
+def _obstacle(obstacle: Obstacle) -> dict[str, object]:
+    solid = obstacle.solid
+    if isinstance(solid, Box):
+        box = {"center": solid.centre, "size": solid.size, "yaw": solid.yaw}
+        return {"name": obstacle.name, "box": box}
+    start, end = solid.ends
+    if np.array_equal(start, end):
+        return {"name": obstacle.name, "sphere": {"center": start, "radius": solid.radius}}
+    return {"name": obstacle.name, "capsule": {"from": start, "to": end, "radius": solid.radius}}

@@ -1,0 +1,135 @@
+"""What the operator is told to do, for a task that is met: sentences for the terminal and the sheet.
+
+Lengths in millimetres, angles in degrees, in the task frame. Nothing here is said of a task that is missed.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from synth.guide.sensitivity import LARGEST_TILT
+from synth.rounding import Unit, rounded_down, rounded_up
+from synth.synthesis.forgiveness import HAND_PLACES, HAND_TURNS
+
+if TYPE_CHECKING:
+    from synth.guide.guide import Guide
+    from synth.robot import BasePose, LinkShape
+    from synth.synthesis import Forgiveness
+
+_STRAIGHT = 100.0  # m, a bend radius that no eye and no hand can tell from none
+_NO_HAND = 0.02  # a chance below is none to count on, and too small to be told from so many tries
+_MOST_DIGITS = 6
+
+
+def instructions(guide: Guide) -> tuple[str, ...]:
+    """Return the steps of bending the link, each a sentence or a few.
+
+    Args:
+        guide: The guide to a shape that meets its task.
+    """
+    steps = [] if guide.cut is None else [cut_sentence(*guide.cut)]
+    limit = 1e3 * guide.arm.robot.link.min_bend_radius
+    shape = (
+        f"Soften the link and shape it: {link_sentence(guide.link)}, never below {limit:.0f} mm. "
+        "P3 and P4 come to their places; L100 is the middle of the tube, 100 mm along from P2, END its end."
+    )
+    return (
+        *steps,
+        hold_sentence(guide),
+        shape,
+        f"{axis_sentence(guide)} {distances_sentence(guide)}",
+        " ".join(tolerance_sentences(guide)),
+        *([] if guide.forgiveness is None else [hand_sentence(guide.forgiveness)]),
+    )
+
+
+def cut_sentence(d35: float, d45: float) -> str:
+    """Return to what the rigid link is to be cut, where the synthesis chose it."""
+    return (
+        f"Cut the rigid link to d35 = {1e3 * d35:.1f} mm and d45 = {1e3 * d45:.1f} mm, from P3 and P4 to P5."
+    )
+
+
+def base_sentence(base: BasePose) -> str:
+    """Return where the robot stands."""
+    x, y, z = 1e3 * base.position
+    yaw = math.degrees(base.yaw)
+    return f"The base stands with P1 at ({x:z.1f}, {y:z.1f}, {z:z.1f}) mm, turned by {yaw:z.1f} deg."
+
+
+def hold_sentence(guide: Guide) -> str:
+    """Return what to do with the joints while the link is bent."""
+    first, second = math.degrees(guide.posture.joint1), math.degrees(guide.posture.joint2)
+    sentence = f"Set joint 1 to {first:z.1f} deg and hold it there, joint 2 at {second:z.1f} deg."
+    if not guide.posture.clear:
+        sentence += " No posture was found in which the bent arm is clear of everything: make room for it."
+    return sentence
+
+
+def axis_sentence(guide: Guide) -> str:
+    """Return how axis 2 lies at the hold angle, as an elevation and a heading."""
+    elevation, heading = math.degrees(guide.hold.elevation), guide.hold.heading
+    if math.isnan(heading):
+        side = "above" if elevation > 0.0 else "below"
+        return f"Axis 2 runs through END, P3 and P4 and is vertical, P4 {side} P3."
+    side = "below" if f"{elevation:z.1f}".startswith("-") else "above"
+    turn = math.degrees(heading)
+    return (
+        f"Axis 2 runs through END, P3 and P4: from P3 to P4 {abs(elevation):.1f} deg {side} horizontal, "
+        f"heading {turn:z.1f} deg (from x towards y)."
+    )
+
+
+def distances_sentence(guide: Guide) -> str:
+    """Return the distances between the markers, for a tape."""
+    told = ", ".join(f"{name} {1e3 * value:.1f}" for name, value in guide.marker_distances.items())
+    return f"By tape: {told} mm."
+
+
+def link_sentence(shape: LinkShape) -> str:
+    """Return the numbers of a link's shape, without a full stop."""
+    radius = "straight"
+    if shape.min_bend_radius < _STRAIGHT:
+        radius = f"smallest bend radius {rounded_down(shape.min_bend_radius)} mm"
+    bend = math.degrees(shape.total_bend)
+    return f"link {1e3 * shape.length:.1f} mm long, {radius}, {bend:.1f} deg of bend in all"
+
+
+def tolerance_sentences(guide: Guide) -> tuple[str, ...]:
+    """Return how precisely the shape must be held, as sentences; none for a task that is not met."""
+    tolerance = guide.tolerance
+    if math.isnan(tolerance.position):
+        return ()
+    shift = f"Hold axis 2 within {_kept(tolerance.position, Unit.MM)} mm ({tolerance.position_target})"
+    tilt = _kept(tolerance.direction, Unit.DEG)
+    if tolerance.direction >= LARGEST_TILT:
+        return (f"{shift}; its direction matters little: a tilt of {tilt} deg alone loses no target.",)
+    d34 = guide.arm.robot.d34
+    marker = _kept(2.0 * d34 * math.sin(0.5 * tolerance.direction), Unit.MM)
+    return (
+        f"{shift} and {tilt} deg ({tolerance.direction_target}); within half of each if both are off.",
+        f"P3 off against P4 by {marker} mm across the axis is such a tilt.",
+    )
+
+
+def hand_sentence(forgiveness: Forgiveness) -> str:
+    """Return what becomes of the task when a hand as published bends the link, and nobody corrects it."""
+    (place, place_spread), (turn, turn_spread) = HAND_PLACES, HAND_TURNS
+    hand = (
+        f"a hand as published ({1e3 * place:.1f} ± {1e3 * place_spread:.1f} mm, "
+        f"{math.degrees(turn):.0f} ± {math.degrees(turn_spread):.1f} deg)"
+    )
+    miss = f"expect a worst miss of {rounded_up(forgiveness.expected_worst_miss)} mm"
+    rest = f"joints recomputed from the measured arm; {miss}. So measure, and correct until it is right."
+    if forgiveness.chance < _NO_HAND:
+        never = "No hand holds this at the first try"
+        return f"{never}: {hand} meets every target in less than 2 % of tries, {rest}"
+    share = min(int(rounded_down(forgiveness.chance, Unit.PERCENT, 0)), 99)
+    return f"At the first try {hand} meets every target in about {share} % of tries, {rest}"
+
+
+def _kept(value: float, unit: Unit) -> str:
+    """Return a tolerance to keep, rounded down, with two decimals or as many as it takes not to be zero."""
+    told = [rounded_down(value, unit, digits) for digits in range(2, _MOST_DIGITS)]
+    return next((each for each in told if float(each) > 0.0), told[-1])

@@ -1,0 +1,67 @@
+"""Numbers in sentences, rounded to the side on which the sentence stays true.
+
+A lower bound, a clearance, or a tolerance to keep is rounded down; an upper bound, a miss, or a change that
+will do is rounded up. "At least 274.6 mm" is false where 274.585 mm exists; "at least 274.5 mm" is not.
+"""
+
+from __future__ import annotations
+
+import math
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
+from enum import Enum
+
+
+class Unit(Enum):
+    """What a number is told in: its symbol, and how many of it are one in SI."""
+
+    MM = "mm", 1e3
+    DEG = "deg", math.degrees(1.0)
+    PERCENT = "%", 1e2
+
+    @property
+    def symbol(self) -> str:
+        """How it is written behind a number."""
+        return self.value[0]
+
+    def of(self, value: float) -> Decimal:
+        """Return a value in SI units in this one.
+
+        A power of ten only moves the decimal point, so that 0.3 mm from a file is 0.3 and no less.
+        """
+        factor = self.value[1]
+        if self is Unit.DEG:
+            return Decimal(repr(float(value) * factor))
+        return Decimal(repr(float(value))) * Decimal(repr(factor))
+
+
+def rounded_down(value: float, unit: Unit = Unit.MM, digits: int = 1) -> str:
+    """Return the largest number with so many decimals that is no more than a value.
+
+    Args:
+        value: In SI units; also negative or infinite.
+        unit: What to tell it in.
+        digits: Decimals.
+    """
+    return _rounded(value, unit, digits, ROUND_FLOOR)
+
+
+def rounded_up(value: float, unit: Unit = Unit.MM, digits: int = 1) -> str:
+    """Return the smallest number with so many decimals that is no less than a value; see `rounded_down`."""
+    return _rounded(value, unit, digits, ROUND_CEILING)
+
+
+def at_least(value: float, unit: Unit = Unit.MM, digits: int = 1) -> str:
+    """Return a lower bound in words, such as "at least 274.5 mm"; see `rounded_down`."""
+    return f"at least {rounded_down(value, unit, digits)} {unit.symbol}"
+
+
+def at_most(value: float, unit: Unit = Unit.MM, digits: int = 1) -> str:
+    """Return an upper bound in words, such as "at most 456.9 mm"; see `rounded_up`."""
+    return f"at most {rounded_up(value, unit, digits)} {unit.symbol}"
+
+
+def _rounded(value: float, unit: Unit, digits: int, rounding: str) -> str:
+    if not math.isfinite(value):
+        return f"{value}"
+    number = unit.of(value).quantize(Decimal(1).scaleb(-digits), rounding=rounding)
+    return f"{number + 0:f}" if number else f"{abs(number):f}"  # no "-0.0"
