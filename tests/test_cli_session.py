@@ -187,7 +187,7 @@ def test_a_disk_that_filled_up_costs_the_files_but_not_the_words(tmp_path):
     ("module", "function"),
     [
         ("synth.task.reading", "load_task"),
-        ("synth.synthesis.search", "part_of"),
+        ("synth.synthesis.search", "why_impossible"),
         ("synth.export.files", "draw_sheet"),
     ],
 )
@@ -202,8 +202,6 @@ def test_a_wish_to_stop_anywhere_still_gives_the_best_so_far(tmp_path, module, f
     )
     if function == "load_task":
         before += "import synth.task\nsynth.task.load_task = pressed"
-    if function == "part_of":
-        before = before.replace("synth.synthesis.search", "synth.synthesis.solve")
     answer = program("solve", ONE_TARGET, "-o", tmp_path, before=before)
     assert "the best shape so far is kept" in answer.stderr
     assert "Aborted" not in answer.stderr

@@ -4,8 +4,9 @@ import math
 
 import pytest
 from planted import planted_task
+from sampled_shapes import noisy_task
 
-from synth.synthesis import solve
+from synth.synthesis import Status, solve
 from synth.synthesis.watch import Watch
 
 
@@ -122,3 +123,23 @@ def test_what_a_users_report_raises_comes_through():
 
     with pytest.raises(ValueError, match="mine"):
         solve(planted_task(15, 4)[0], progress=report)
+
+
+def test_a_proof_for_which_no_time_is_left_is_said_to_be_missing():
+    solution = solve(planted_task(15, 4)[0], prove=True, stop=lambda: True)
+    assert solution.bound is None
+    assert solution.notes == ("nothing was proven: the search was stopped before",)
+
+
+def test_a_proof_that_is_stopped_says_so():
+    asked = []
+
+    def proving(progress):
+        if progress.phase == "proving":
+            asked.append(progress)
+
+    task = noisy_task(5)
+    solution = solve(task, alternatives=0, prove=True, stop=lambda: bool(asked), progress=proving)
+    assert solution.bound.lower_bound < solution.bound.best_found
+    assert solution.notes == ("the proof was stopped early: more time may prove more",)
+    assert solution.status is not Status.LIMIT  # the search itself was complete

@@ -140,18 +140,22 @@ class Search:
     def prove(self) -> None:
         """Bound how little any shape can miss, unless the search was stopped already."""
         if self.watch.interrupted:
+            self.notes.append("nothing was proven: the search was stopped before")
             return
         self.complete = True
+        watch = self.watch.within(_PROOF_TIME)
         certifier = Certifier(
             self.part,
             float(self.task.tolerances.min()),
             self.polishing.designs,
             self.polishing.keep,
-            self.watch.within(_PROOF_TIME),
+            watch,
             self.seed,
         )
         with self.watch.on("proving"):
             self.bound = certifier.certificate()
+        if watch.interrupted:
+            self.notes.append("the proof was stopped early: more time may prove more")
 
     def _bound_for(self, designs: tuple[Design, ...]) -> Bound | None:
         """Return the bound with what was found for all targets: that of a part holds for all of them."""
