@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from planted import ROBOT, planted_arm
 
-from synth.geometry import Box, Capsule
+from synth.geometry import Box, Capsule, Solid, Sphere
 from synth.task import Obstacle, PointTarget, Task
 
 if TYPE_CHECKING:
@@ -22,8 +22,10 @@ SPACING = 0.5e-3
 LEAST, MOST = 2e-3, 60e-3  # clearance of the planted arm, m
 
 
-def brute_distance(solid: Box | Capsule, points: np.ndarray) -> np.ndarray:
+def brute_distance(solid: Solid, points: np.ndarray) -> np.ndarray:
     """Return the signed distance of points, (..., 3), from a solid; by the textbook."""
+    if isinstance(solid, Sphere):
+        return np.sqrt(np.sum((points - solid.centre) ** 2, axis=-1)) - solid.radius
     if isinstance(solid, Capsule):
         start, end = solid.ends
         along = end - start

@@ -9,16 +9,16 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from synth.checks import refuse_unless
 from synth.errors import SynthError
 from synth.export.markers import markers_csv
 from synth.export.sheet import draw_sheet
 from synth.export.solution_json import solution_to_json
 from synth.guide import make_guide
+from synth.synthesis import Solution
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-
-    from synth.synthesis import Solution
 
 
 def write_files(solution: Solution, directory: str | os.PathLike[str]) -> list[Path]:
@@ -34,6 +34,7 @@ def write_files(solution: Solution, directory: str | os.PathLike[str]) -> list[P
     Raises:
         SynthError: They cannot be written. Files of an earlier run are then as they were.
     """
+    refuse_unless("solution", solution, Solution)
     guide = make_guide(solution.task, solution.designs[0]) if solution.designs else None
     return write_all(
         {

@@ -5,16 +5,17 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from synth.checks import refuse_unless
 from synth.export.plain import plain
 from synth.guide import MARKERS, make_guide
-from synth.synthesis import MOST_MOTIONS, Bound, motions
+from synth.synthesis import MOST_MOTIONS, Bound, Solution, motions
 from synth.synthesis.solution import target_results
 from synth.version import __version__
 
 if TYPE_CHECKING:
     from synth.guide import Guide, Placement
     from synth.robot import Arm
-    from synth.synthesis import Design, Solution
+    from synth.synthesis import Design
     from synth.task import Task
 
 SCHEMA = "synth.solution/1"
@@ -34,6 +35,7 @@ def solution_to_json(solution: Solution) -> dict[str, Any]:
         Dictionaries, lists, strings, numbers and None, for `json.dumps(..., allow_nan=False)`: what
         JSON cannot hold, NaN and infinity, is None.
     """
+    refuse_unless("solution", solution, Solution)
     task, designs = solution.task, solution.designs
     shape = _shape(task, designs[0]) if designs else dict.fromkeys(_SHAPE_FIELDS)
     content = {

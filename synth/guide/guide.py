@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import FloatArray, frozen
+from synth.checks import refuse_unless
 from synth.guide.sensitivity import ShapeTolerance, shape_tolerance
 from synth.robot import BasePose
+from synth.synthesis import Design
+from synth.task import Task
 
 if TYPE_CHECKING:
     from synth.robot import Arm, Interval, LinkShape
-    from synth.synthesis.solution import Design
-    from synth.task import Task
 
 MARKERS = ("P1", "P2", "P3", "P4")
 LINK_END = "END"
@@ -86,6 +87,8 @@ def make_guide(task: Task, design: Design) -> Guide:
         task: What is asked: its targets decide how precisely the shape must be held.
         design: The shape, and what the independent check says of it.
     """
+    refuse_unless("task", task, Task)
+    refuse_unless("design", design, Design)
     arm = design.arm
     stations = _stations(arm.shape.length)
     return Guide(

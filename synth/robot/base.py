@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.checks import Checks
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+    from synth.arrays import FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +29,10 @@ class BasePose:
     yaw: float = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "position", frozen(self.position))
+        checks = Checks(self)
+        checks.array("position", (3,))
+        checks.number("yaw")
+        checks.refuse()
 
     @property
     def rotation(self) -> FloatArray:

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.checks import Checks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import ArrayLike
+
+    from synth.arrays import FloatArray
 
 
 def arc_motion(curvatures: ArrayLike, lengths: ArrayLike) -> tuple[FloatArray, FloatArray]:
@@ -97,8 +99,17 @@ class LinkShape:
     lengths: FloatArray
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "curvatures", frozen(self.curvatures))
-        object.__setattr__(self, "lengths", frozen(self.lengths))
+        checks = Checks(self)
+        is_bent = checks.array("curvatures", (None, 2))
+        if checks.array("lengths", (None,), least=0.0) and is_bent:
+            if len(self.lengths) != len(self.curvatures):
+                missing = (
+                    f"must be one for each of the {len(self.curvatures)} arcs, but are {len(self.lengths)}"
+                )
+                checks.report("lengths", missing)
+            elif not self.lengths.any():
+                checks.report("lengths", "must be greater than 0 together")
+        checks.refuse()
 
     @property
     def length(self) -> float:

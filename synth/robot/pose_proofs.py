@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.robot.hardware import Interval
+from synth.robot.interval import Interval
 from synth.robot.reach import LinkReach
 
 if TYPE_CHECKING:

@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.checks import refuse_unless
 from synth.geometry import Box
 from synth.robot import BasePose, Interval
-from synth.synthesis.solution import Release
+from synth.synthesis.solution import Release, Solution
 from synth.synthesis.solve import follow
 from synth.synthesis.verification import verify
 from synth.task import Obstacle
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.geometry import Solid
     from synth.robot import MalleableLink
-    from synth.synthesis.solution import Design, Solution
+    from synth.synthesis.solution import Design
     from synth.task import Task
 
 # How far a limit is relaxed, as a share of the most, and how many starts are polished then.
@@ -61,6 +62,7 @@ def explain(solution: Solution, *, stop: Callable[[], bool] | None = None) -> So
         last. None may mean that several limits block together. Should a shape turn up that meets the
         task as it is, the solution with this shape.
     """
+    refuse_unless("solution", solution, Solution)
     if solution.found:
         return solution
     stop = stop or (lambda: False)

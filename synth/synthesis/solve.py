@@ -5,19 +5,21 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from synth.synthesis.arguments import checked_task
 from synth.synthesis.clock import Clock
 from synth.synthesis.many_targets import part_of
 from synth.synthesis.search import ALTERNATIVES, Progress, Search
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    import os
+    from collections.abc import Callable, Mapping, Sequence
 
     from synth.synthesis.solution import Design, Solution
     from synth.task import Task
 
 
 def solve(
-    task: Task,
+    task: Task | str | os.PathLike[str] | Mapping[str, object],
     *,
     seed: int = 0,
     warm_start: Solution | None = None,
@@ -30,7 +32,7 @@ def solve(
     """Find a shape of the malleable link with which the end effector reaches the targets.
 
     Args:
-        task: What is asked.
+        task: What is asked: a task, the path of its file, or a mapping as in a file.
         seed: Seed of the search.
         warm_start: The solution of a task nearby, of the same robot: targets a few millimetres or
             centimetres away. If one of its two best shapes, polished for this task, reaches every target
@@ -45,7 +47,13 @@ def solve(
 
     Returns:
         The solution, whatever was found; its status says what it is worth.
+
+    Raises:
+        InputError: An argument is wrong, or the sizes of the task cannot be meant; with every mistake.
     """
+    task = checked_task(
+        task, seed=seed, warm_start=warm_start, alternatives=alternatives, time_limit=time_limit
+    )
     part = part_of(task, seed)
     search = Search(task, part, seed, Clock(time_limit), stop or _never, progress or _silent, alternatives)
     near = warm_start.designs if warm_start is not None and warm_start.task.robot == task.robot else ()
