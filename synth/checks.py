@@ -252,7 +252,7 @@ def described(value: object) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, int | float):
-        return repr(value) if abs(value) < 1e300 else "a number too large"
+        return "a number too large" if isinstance(value, int) and abs(value) > 10**300 else repr(value)
     if isinstance(value, str):
         return f"the text {value[:40]!r}"
     if isinstance(value, dict | list):

@@ -177,8 +177,7 @@ def _scan(document: Document, surface: object, directory: Path) -> FloatArray | 
         try:
             return read_points(directory / file)
         except InputError as error:
-            for mistake in error.mistakes:
-                _adopt(document, ("surface", "points"), mistake)
+            _adopt(document, ("surface", "points"), error)
     return None
 
 
@@ -196,17 +195,18 @@ def named_robot(document: Document, reference: str, directory: Path) -> Robot | 
     try:
         return load_robot(directory / reference)
     except InputError as error:
-        for mistake in error.mistakes:
-            _adopt(document, ("robot",), mistake)
+        _adopt(document, ("robot",), error)
     return None
 
 
-def _adopt(document: Document, path: KeyPath, mistake: Mistake) -> None:
-    """Take over a mistake in a file that a key names; one of the file as a whole is told with that key."""
-    if mistake.line is None:
-        document.report(path, f"{mistake.file}: {mistake.message}")
-    else:
-        document.adopt(path, mistake)
+def _adopt(document: Document, path: KeyPath, error: InputError) -> None:
+    """Take over the mistakes in a file that a key names; one of the file as a whole is told with that key."""
+    are_lines = any(mistake.line is not None for mistake in error.mistakes)
+    for mistake in error.mistakes:
+        if are_lines:
+            document.adopt(path, mistake)
+        else:
+            document.report(path, f"{mistake.file}: {mistake.message}")
 
 
 def _report_names_given_twice(document: Document, key: str, kind: str, entries: object) -> None:
