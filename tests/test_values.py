@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 import synth
 from synth import (
@@ -25,6 +26,8 @@ from synth import (
     Task,
     Topology,
 )
+from synth.cli import main
+from synth.task.measured_file import parse_measurements
 
 ROBOT = PRESETS["malleable-2dof"]
 TARGET = PointTarget("pick", [0.5, 0.1, 0.2])
@@ -119,3 +122,49 @@ def test_a_rigid_link_of_no_length_and_one_of_no_radius_are_solved():
         solution = synth.solve(Task("x", robot, [PointTarget("a", [0.3, 0.2, 0.4])], obstacles=[ball]))
         assert solution.found
         assert np.isfinite(solution.designs[0].verification.clearances).all()
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda x: PointTarget("a", [x, 0, 0]),
+        lambda x: TargetTable(["a", "b"], [[x, 0, 0], [0, 0, 1]], [1, 1], [1, 1]),
+        lambda x: BasePose([x, 0, 0]),
+        lambda x: Sphere([x, 0, 0], 1),
+        lambda x: Box([x, 0, 0], [1, 1, 1]),
+        lambda x: Capsule([[x, 0, 0], [1, 1, 1]], 1),
+        lambda x: Obstacle("a", Sphere([x, 0, 0], 1)),
+        lambda x: LinkShape([[x, 0]], [1]),
+        lambda x: Task("a", ROBOT, [PointTarget("a", [x, 0, 0])]),
+    ],
+)
+def test_values_that_hold_arrays_compare_by_value_and_never_raise(make):
+    assert make(0.25) == make(0.25)
+    assert make(0.0) == make(-0.0)
+    assert hash(make(0.0)) == hash(make(-0.0))
+    assert make(0.25) != make(0.5)
+    assert make(0.25) != 3
+    assert len({make(0.25), make(0.25), make(0.5)}) == 2
+
+
+def test_markers_that_are_not_those_of_the_hardware_are_refused_with_the_number():
+    words = "P3 and P4 are 62.8 mm apart; on this robot they are 49.0 mm apart"
+    start = {"synth": 1, "length_unit": "mm", "robot": "malleable-2dof"}
+    markers = {"P3": [0, 0, 600], "P4": [62.8, 0, 600]}
+    task = start | {"targets": [{"position": [400, 300, 500]}], "current": {"markers": markers}}
+    with pytest.raises(InputError, match=words) as caught:
+        synth.parse_task(task)
+    assert [mistake.key for mistake in caught.value.mistakes] == ["current.markers"]
+    measured = markers | {"P1": [0, 0, 0], "P2": [0, 0, 40]}
+    with pytest.raises(InputError) as caught:
+        parse_measurements(start | {"sigma": 0.3, "markers": measured})
+    assert [m.message for m in caught.value.mistakes] == [
+        words.replace("P3 and P4", "P1 and P2").replace("62.8", "40.0").replace("49.0", "58.0"),
+        words,
+    ]
+
+
+def test_no_number_of_seconds_is_nan():
+    result = CliRunner().invoke(main, ["solve", "task.yaml", "--time-limit", "nan"])
+    assert result.exit_code == 2
+    assert "not a number" in result.output

@@ -9,18 +9,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.checks import Checks
-
-if TYPE_CHECKING:
-    from synth.arrays import FloatArray
 
 _UP = np.array([0.0, 0.0, 1.0])
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Sphere:
     """A ball.
@@ -63,6 +61,7 @@ class Sphere:
         return Sphere((self.centre - position) @ _about_z(yaw), self.radius)
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Capsule:
     """All points within a radius of a segment.
@@ -113,6 +112,7 @@ class Capsule:
         return np.asarray(across / np.linalg.norm(across))
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Box:
     """A box with vertical edges.

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.checks import Checks
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from synth.arrays import FloatArray
 
-
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class BasePose:
     """The pose of the robot's base frame in the task frame.

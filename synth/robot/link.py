@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.checks import Checks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import ArrayLike
-
-    from synth.arrays import FloatArray
 
 
 def arc_motion(curvatures: ArrayLike, lengths: ArrayLike) -> tuple[FloatArray, FloatArray]:
@@ -86,6 +85,7 @@ def _along(curvatures: ArrayLike, lengths: ArrayLike) -> Iterator[tuple[FloatArr
         yield rotation, position
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class LinkShape:
     """One shape of the malleable link; it starts at P2 along +z of the base frame.

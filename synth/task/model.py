@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.checks import LONGEST_NAME, SMALLEST, Checks, described, given_twice, wrong_name, wrong_type
 from synth.geometry import Box, Capsule, Sphere
 from synth.robot import BasePose, LinkShape, Robot
@@ -40,6 +40,7 @@ class Objective(Enum):
     MINIMAX = "minimax"
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class PointTarget:
     """A point that the end effector shall reach: one kind of target.
@@ -71,6 +72,7 @@ class _CheckedNames(tuple[str, ...]):
     __slots__ = ()
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class TargetTable(Sequence[PointTarget]):
     """Targets in columns: as a sequence it is one of `PointTarget`, made when asked for.
@@ -147,6 +149,7 @@ class TargetTable(Sequence[PointTarget]):
         )
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Obstacle:
     """A solid that link, rigid link and end effector keep clear of.
@@ -166,6 +169,7 @@ class Obstacle:
         checks.refuse()
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Task:
     """A synthesis task: reach the targets with one shape of the link.
