@@ -1,6 +1,7 @@
 """The array type of the project, read-only copies for frozen values, and how such values compare."""
 
 from dataclasses import fields
+from math import isnan
 from typing import Any, TypeVar
 
 import numpy as np
@@ -51,10 +52,10 @@ def _equal(one: Any, other: Any) -> bool:
 
 
 def _key(value: Any) -> Any:
-    """Return something that can be hashed and is equal for equal values; of an array a few numbers will do."""
+    """Return what can be hashed and is equal for equal values; of an array a few numbers will do."""
     if isinstance(value, np.ndarray):
-        few = value.ravel()[:_HASHED].tolist()
-        return value.shape, tuple(None if number != number else number for number in few)  # noqa: PLR0124
+        few = value.ravel()[:_HASHED].tolist()  # without NaN, whose hash is that of an object
+        return value.shape, tuple(None if isnan(number) else number for number in few)
     if isinstance(value, tuple | list):
         return tuple(map(_key, value[:_HASHED]))
     return value

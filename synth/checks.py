@@ -174,7 +174,7 @@ def wrong_number(
     try:
         number = float(value)
     except OverflowError:
-        number = math.inf  # an integer beyond all floats
+        return f"must be a finite number, but is {described(value)}"
     if not math.isfinite(number) and not (most == math.inf == number):
         return f"must be a finite number, but is {number!r}"
     if number <= above:

@@ -46,7 +46,10 @@ WRONG = [
         lambda: TargetTable(["a", "a"], np.zeros((2, 3)), [1, -1], [NAN, 1]),
         ["targets[1].name", "targets[1].tolerance", "targets[0].weight"],
     ),
+    (lambda: TargetTable(5, [], [], []), ["names"]),
+    (lambda: TargetTable([[1], "b"], np.zeros((2, 3)), [1, 1], [1, 1]), ["targets[0].name"]),
     (lambda: Task("x", ROBOT, []), ["targets"]),
+    (lambda: Interval(0, 10**400), ["upper"]),
     (lambda: Task("x", ROBOT, [TARGET, TARGET]), ["targets[1].name"]),
     (
         lambda: Task("x", "malleable-2dof", [3], floor=NAN, topology="scra", objective=1, obstacles=[2]),

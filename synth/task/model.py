@@ -94,11 +94,7 @@ class TargetTable(Sequence[PointTarget]):
     def __post_init__(self) -> None:
         checks = Checks(self)
         if not isinstance(self.names, _CheckedNames):
-            checks.put("names", _CheckedNames(self.names))
-            for index, name in enumerate(self.names if _wrong_names(self.names) else ()):
-                if wrong := wrong_name(name):
-                    checks.report(f"targets[{index}].name", wrong)
-            _report_names_given_twice(checks, "targets", self.names)
+            _check_names(checks, self.names)
         count = len(self.names)
         checks.array("positions", (count, 3), rows="targets[{}].position")
         checks.array("tolerances", (count,), least=SMALLEST, rows="targets[{}].tolerance")
@@ -245,6 +241,20 @@ class Task:
         """The obstacles in the base frame."""
         base = self.base
         return tuple(obstacle.solid.seen_from(base.position, base.yaw) for obstacle in self.obstacles)
+
+
+def _check_names(checks: Checks, given: Any) -> None:
+    """Check the names of a table of targets."""
+    if not isinstance(given, Sequence) or isinstance(given, str):
+        checks.report("names", f"must be a list of texts, but is {described(given)}")
+        checks.refuse()
+    if _wrong_names(given):
+        for index, name in enumerate(given):
+            if wrong := wrong_name(name):
+                checks.report(f"targets[{index}].name", wrong)
+    else:
+        _report_names_given_twice(checks, "targets", given)
+    checks.put("names", _CheckedNames(given))
 
 
 def _wrong_names(names: Sequence[str]) -> bool:
