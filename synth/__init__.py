@@ -19,13 +19,17 @@ from synth.version import __version__
 if TYPE_CHECKING:
     from synth.errors import GeometryError, InputError, Mistake, SolverError, SynthError
     from synth.export import solution_to_json, write_files
-    from synth.geometry import Box, Capsule
+    from synth.geometry import Box, Capsule, Sphere
     from synth.guide import Guide, make_guide
     from synth.robot import (
         PRESETS,
         Arm,
         BasePose,
+        Interval,
+        JointLimits,
         LinkShape,
+        MalleableLink,
+        RigidLink,
         Robot,
         Workspace,
         link_to_pose,
@@ -33,18 +37,32 @@ if TYPE_CHECKING:
         why_no_link,
     )
     from synth.synthesis import NotFoundError, Solution, Status, explain, motions, solve, verify
-    from synth.task import Objective, Obstacle, PointTarget, Task, Topology, load_robot, load_task, parse_task
+    from synth.task import (
+        Objective,
+        Obstacle,
+        PointTarget,
+        TargetTable,
+        Task,
+        Topology,
+        load_robot,
+        load_task,
+        parse_task,
+    )
 
 _ROOMS = {
     "errors": ("GeometryError", "InputError", "Mistake", "SolverError", "SynthError"),
     "export": ("solution_to_json", "write_files"),
-    "geometry": ("Box", "Capsule"),
+    "geometry": ("Box", "Capsule", "Sphere"),
     "guide": ("Guide", "make_guide"),
     "robot": (
         "PRESETS",
         "Arm",
         "BasePose",
+        "Interval",
+        "JointLimits",
         "LinkShape",
+        "MalleableLink",
+        "RigidLink",
         "Robot",
         "Workspace",
         "link_to_pose",
@@ -56,6 +74,7 @@ _ROOMS = {
         "Objective",
         "Obstacle",
         "PointTarget",
+        "TargetTable",
         "Task",
         "Topology",
         "load_robot",
@@ -74,17 +93,23 @@ __all__ = [
     "GeometryError",
     "Guide",
     "InputError",
+    "Interval",
+    "JointLimits",
     "LinkShape",
+    "MalleableLink",
     "Mistake",
     "NotFoundError",
     "Objective",
     "Obstacle",
     "PointTarget",
+    "RigidLink",
     "Robot",
     "Solution",
     "SolverError",
+    "Sphere",
     "Status",
     "SynthError",
+    "TargetTable",
     "Task",
     "Topology",
     "Workspace",

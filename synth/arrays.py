@@ -1,9 +1,15 @@
-"""The array type of the project, and read-only copies for frozen values."""
+"""The array type of the project, read-only copies for frozen values, and how such values compare."""
+
+from dataclasses import fields
+from math import isnan
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 FloatArray = NDArray[np.float64]
+_T = TypeVar("_T")
+_HASHED = 16  # numbers or entries that enter a hash
 
 
 def frozen(values: ArrayLike) -> FloatArray:
@@ -11,3 +17,45 @@ def frozen(values: ArrayLike) -> FloatArray:
     array = np.array(values, dtype=np.float64)
     array.setflags(write=False)
     return array
+
+
+def compared_by_value(cls: type[_T]) -> type[_T]:
+    """Give a frozen dataclass that holds arrays, declared with `eq=False`, equality and a hash by value.
+
+    Two values are equal if they are of one class and their fields are: arrays if they have the same shape
+    and numbers, NaN being equal to itself. The generated equality raises for arrays.
+    """
+
+    def equal(self: object, other: object) -> Any:
+        if other.__class__ is not self.__class__:
+            return NotImplemented
+        return self is other or all(
+            _equal(getattr(self, field.name), getattr(other, field.name))
+            for field in fields(self)  # type: ignore[arg-type]  # a dataclass
+        )
+
+    def hashed(self: object) -> int:
+        names = [field.name for field in fields(self)]  # type: ignore[arg-type]
+        return hash((cls, *(_key(getattr(self, name)) for name in names)))
+
+    cls.__eq__ = equal  # type: ignore[method-assign]
+    cls.__hash__ = hashed  # type: ignore[method-assign]
+    return cls
+
+
+def _equal(one: Any, other: Any) -> bool:
+    if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
+        return one.shape == other.shape and bool(np.array_equal(one, other, equal_nan=one.dtype.kind == "f"))
+    if isinstance(one, tuple | list) and one.__class__ is other.__class__:
+        return len(one) == len(other) and all(map(_equal, one, other))
+    return bool(one == other)
+
+
+def _key(value: Any) -> Any:
+    """Return what can be hashed and is equal for equal values; of an array a few numbers will do."""
+    if isinstance(value, np.ndarray):
+        few = value.ravel()[:_HASHED].tolist()  # without NaN, whose hash is that of an object
+        return value.shape, tuple(None if isnan(number) else number for number in few)
+    if isinstance(value, tuple | list):
+        return tuple(map(_key, value[:_HASHED]))
+    return value

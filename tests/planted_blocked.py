@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from planted import ROBOT, feasible, planted_arm
 
-from synth.geometry import Capsule
+from synth.geometry import Sphere
 from synth.robot import Arm, ArmBody, Interval, LinkShape
 from synth.task import Obstacle, PointTarget, Task
 
@@ -110,7 +110,7 @@ def obstacle_in_the_way(rng: np.random.Generator) -> Task:
     point = np.array([c * point[0] - s * point[1], s * point[0] + c * point[1], point[2]])
     direction = rng.normal(size=3)
     centre = point + 0.03 * direction / np.linalg.norm(direction)
-    return replace(task, obstacles=(Obstacle("ball", Capsule.sphere(centre, 0.035)),))
+    return replace(task, obstacles=(Obstacle("ball", Sphere(centre, 0.035)),))
 
 
 BLOCKED = {

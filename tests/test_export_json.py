@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from synth.export import solution_to_json
-from synth.geometry import Box, Capsule
+from synth.geometry import Box, Capsule, Sphere
 from synth.robot import (
     PRESETS,
     Arm,
@@ -152,7 +152,7 @@ def solid_of(obstacle):
         box = obstacle["box"]
         return Box(box["center"], box["size"], box["yaw"])
     if "sphere" in obstacle:
-        return Capsule.sphere(obstacle["sphere"]["center"], obstacle["sphere"]["radius"])
+        return Sphere(obstacle["sphere"]["center"], obstacle["sphere"]["radius"])
     capsule = obstacle["capsule"]
     return Capsule([capsule["from"], capsule["to"]], capsule["radius"])
 
@@ -187,7 +187,7 @@ def task_of(content):
 def test_the_file_alone_rebuilds_the_task_and_the_shape_and_verifies_it():
     obstacles = (
         Obstacle("shelf", Box([0.9, 0.2, 0.5], [0.1, 0.4, 0.2], 0.3)),
-        Obstacle("ball", Capsule.sphere([-0.9, 0.2, 0.5], 0.05)),
+        Obstacle("ball", Sphere([-0.9, 0.2, 0.5], 0.05)),
         Obstacle("pipe", Capsule([[0.0, 0.9, 0.0], [0.0, 0.9, 1.0]], 0.04)),
     )
     task = replace(SOLUTION.task, obstacles=obstacles, topology=Topology.GENERAL, objective=Objective.MINIMAX)

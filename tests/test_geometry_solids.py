@@ -2,13 +2,13 @@ import numpy as np
 import pytest
 from oracle import distance_from_solid
 
-from synth.geometry import Box, Capsule
+from synth.geometry import Box, Capsule, Sphere
 
 RNG = np.random.default_rng(5)
 SOLIDS = [
     *(Box(RNG.uniform(-1, 1, 3), RNG.uniform(0.05, 1, 3), RNG.uniform(-4, 4)) for _ in range(6)),
     *(Capsule(RNG.uniform(-1, 1, (2, 3)), RNG.uniform(0.05, 0.5)) for _ in range(4)),
-    Capsule.sphere(RNG.uniform(-1, 1, 3), 0.4),
+    Sphere(RNG.uniform(-1, 1, 3), 0.4),
 ]
 POINTS = RNG.uniform(-2, 2, (4000, 3))
 
@@ -64,4 +64,4 @@ def test_on_the_axis_of_a_capsule_outward_is_across_it():
     outward = capsule.outward(np.array([[0.5, 0.5, 0.0]]))[0]
     assert np.linalg.norm(outward) == pytest.approx(1)
     assert outward @ [1, 1, 0] == pytest.approx(0)
-    assert np.linalg.norm(Capsule.sphere([0, 0, 0], 1.0).outward(np.zeros((1, 3)))[0]) == pytest.approx(1)
+    assert np.linalg.norm(Sphere([0, 0, 0], 1.0).outward(np.zeros((1, 3)))[0]) == pytest.approx(1)

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from synth.errors import SynthError
-from synth.geometry import Box, Capsule
+from synth.geometry import Box, Sphere
 from synth.guide import MARKERS, guide_text, instructions, make_guide, solution_text, summary_text
 from synth.guide.guide import SPACING, place
 from synth.guide.instructions import axis_sentence, hold_sentence, tolerance_sentences
@@ -127,7 +127,7 @@ def test_the_posture_to_hold_is_clear_of_obstacles_and_the_nearest_that_is():
     ball = BASE.to_task(BasePose(yaw=math.pi).to_task(middle))[
         0
     ]  # in the way in the middle of joint 1's range
-    task = replace(TASK, obstacles=(Obstacle("ball", Capsule.sphere(ball, 0.08)),))
+    task = replace(TASK, obstacles=(Obstacle("ball", Sphere(ball, 0.08)),))
     posture = hold_posture(task, ARM)
     assert posture.clear
     assert 0.0 < abs(posture.joint1 - math.pi) < math.pi / 2

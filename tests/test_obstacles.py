@@ -8,7 +8,7 @@ from oracle import OracleArm
 from planted import ROBOT, planted_task
 from planted_obstacles import SCENES, planted_with_obstacles
 
-from synth.geometry import Box, Capsule
+from synth.geometry import Box, Sphere
 from synth.robot import Arm, BasePose
 from synth.synthesis import Status, solve, verify
 from synth.synthesis.separation import ROD, separations
@@ -34,7 +34,7 @@ def test_an_obstacle_on_the_planted_arm_is_seen_and_gone_around():
     theta1 = joints[0, 0]
     c, s = np.cos(theta1), np.sin(theta1)
     middle = np.array([c * middle[0] - s * middle[1], s * middle[0] + c * middle[1], middle[2]])
-    task = replace(task, obstacles=(Obstacle("ball", Capsule.sphere(middle, 0.03)),))
+    task = replace(task, obstacles=(Obstacle("ball", Sphere(middle, 0.03)),))
     check = verify(task, arm, joints)
     assert not check.found
     assert check.clearances[0] == pytest.approx(-0.055, abs=1e-4)

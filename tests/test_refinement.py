@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from planted import ROBOT, noisy, planted_task
 
-from synth.geometry import Capsule
+from synth.geometry import Sphere
 from synth.robot import BasePose, Interval, JointLimits, RigidLink
 from synth.synthesis.category_offsets import category_offsets, category_slopes
 from synth.synthesis.population import Population, free_directions, in_equal_arcs, into_limits
@@ -246,7 +246,7 @@ def test_shapes_are_moved_out_of_an_obstacle_though_only_the_rigid_link_is_in_it
     end = arm.end_frame[1]
     joints, _ = arm.closest_joints(point)
     middle = 0.5 * (point + BasePose(yaw=float(joints[0])).to_task(end))
-    thin = Obstacle("ball", Capsule.sphere(middle, 0.012))
+    thin = Obstacle("ball", Sphere(middle, 0.012))
     task = replace(task, floor=None, obstacles=(thin,))
     around = np.repeat(Population.of(in_equal_arcs(arm)).unknowns, 20, axis=0)
     around = into_limits(ROBOT, around + 0.05 * np.random.default_rng(0).normal(size=around.shape))

@@ -3,7 +3,7 @@ import pytest
 from oracle import SPACING, OracleArm
 from planted import ROBOT, planted_arm
 
-from synth.geometry import Box, Capsule
+from synth.geometry import Box, Capsule, Sphere
 from synth.robot import Arm, ArmBody, LinkShape
 
 CLOSE = 3e-5  # what the bound gives away, m
@@ -21,7 +21,7 @@ def scene(seed: int):
     solids = [
         Box(rng.uniform(-0.6, 0.6, 3), rng.uniform(0.05, 0.4, 3), rng.uniform(0, 6)),
         Capsule(rng.uniform(-0.6, 0.6, (2, 3)), 0.05),
-        Capsule.sphere(rng.uniform(-0.6, 0.6, 3), 0.1),
+        Sphere(rng.uniform(-0.6, 0.6, 3), 0.1),
     ]
     return planted_arm(rng), joints, solids
 

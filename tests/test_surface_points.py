@@ -42,9 +42,6 @@ def test_points_stand_behind_targets(tmp_path):
         ("1;2;3\n", [(1, "must hold three numbers")]),
         ("a,b,c\n1,2,3\n", [(1, "x must be a number")]),
         ("1,2,1e9\n", [(1, "z must be a finite number")]),
-        ("", [(None, "holds no points")]),
-        ("x,y,z\n\n", [(None, "holds no points")]),
-        (b"\xff\xfe1,2,3", [(None, "UTF-8")]),
         ("x\n" * 12, [(i, "must hold") for i in range(1, 11)] + [(None, "more such lines")]),
     ],
 )
@@ -57,6 +54,51 @@ def test_every_mistake_is_named_with_its_file_and_line(tmp_path, text, places):
     for mistake, (_, words) in zip(mistakes, places, strict=True):
         assert mistake.file == str(tmp_path / "scan.csv")
         assert words in mistake.message
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "holds no points"),
+        ("x,y,z\n\n", "holds no points"),
+        (b"\xff\xfe1,2,3", "UTF-8"),
+        (None, "no such"),
+    ],
+)
+def test_a_file_that_is_wrong_as_a_whole_is_told_with_the_key_and_line_of_the_task(tmp_path, text, words):
+    path = written(tmp_path, text or "")
+    if text is None:
+        (tmp_path / "scan.csv").unlink()
+    with pytest.raises(InputError) as caught:
+        load_task(path)
+    (mistake,) = caught.value.mistakes
+    assert (mistake.file, mistake.line, mistake.key) == (str(path), 4, "surface.points")
+    assert words in mistake.message
+    assert "scan.csv" in mistake.message
+
+
+@pytest.mark.parametrize("cell", ["1_000", "\u0661\u0662", "0x10", "1e", "--1", "infinity"])
+def test_what_is_no_plain_number_is_named_with_its_cell(tmp_path, cell):
+    with pytest.raises(InputError) as caught:
+        load_task(written(tmp_path, f"500,10,200\n500,{cell},200\n"))
+    (mistake,) = caught.value.mistakes
+    assert mistake.line == 2
+    assert "y must be a" in mistake.message
+    assert repr(cell) in mistake.message
+
+
+def test_what_is_no_table_is_never_quoted(tmp_path):
+    (tmp_path / "shadow").write_text("root:SECRET:1\nSECRET,SECRET,SECRET\n")
+    path = written(tmp_path, "", TASK.replace("scan.csv", "shadow"))
+    with pytest.raises(InputError) as caught:
+        load_task(path)
+    assert [mistake.line for mistake in caught.value.mistakes] == [1, 2]
+    assert "SECRET" not in str(caught.value)
+    (tmp_path / "robot.yaml").write_text("root:SECRET:1")
+    path.write_text(TASK.replace("malleable-2dof", "robot.yaml"))
+    with pytest.raises(InputError) as caught:
+        load_task(path)
+    assert "SECRET" not in str(caught.value)
 
 
 def test_a_missing_file_is_named_beside_other_mistakes(tmp_path):

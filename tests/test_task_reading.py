@@ -62,7 +62,7 @@ robot:
     d35: 455
     d45: 460
 targets:
-- position: [1, 2, 3]
+- position: [100, 200, 300]
 """
 
 AS_READ = Robot(
@@ -132,7 +132,25 @@ class TestRightFiles:
         ("unit", "d12"), [("", 0.058), ("length_unit: cm", 0.58), ("length_unit: m", 58.0)]
     )
     def test_inline_robot_inherits_the_unit_unless_it_states_one(self, unit, d12):
-        assert parse_task(INLINE.replace("  d12", f"  {unit}\n  d12")).robot.d12 == d12
+        position = f"[{5e3 * d12}, 0, 0]"  # within the reach of a robot of this size
+        content = INLINE.replace("  d12", f"  {unit}\n  d12").replace("[100, 200, 300]", position)
+        assert parse_task(content).robot.d12 == d12
+
+    @pytest.mark.parametrize(("old", "new"), [("mm", "MM"), ("any  ", "Puma"), ("minimax", "Minimax")])
+    def test_fixed_words_are_read_without_regard_to_case(self, old, new):
+        assert parse_task(TASK.replace(f": {old}", f": {new}", 1)).robot.name == "malleable-2dof"
+
+    def test_characters_beyond_16_bits_may_be_escaped_as_in_json(self):
+        content = json.dumps(
+            {
+                "synth": 1,
+                "length_unit": "mm",
+                "robot": "malleable-2dof",
+                "targets": [{"name": "crate \U0001f4e6", "position": [400, 300, 500]}],
+            }
+        )
+        assert "\\ud83d" in content
+        assert parse_task(content).targets[0].name == "crate \U0001f4e6"
 
     def test_null_floor_is_no_floor(self):
         assert parse_task(TASK.replace("floor: 5", "floor: null")).floor is None
@@ -302,7 +320,7 @@ WRONG = {
     "version as a float": (task("synth: 1", "synth: 1.0"), "synth", 1, "must be 1 1.0"),
     # words
     "unit": (task("length_unit: mm", "length_unit: inch"), "length_unit", 3, "'mm', 'cm' or 'm' 'inch'"),
-    "unit in capitals": (task("length_unit: mm", "length_unit: MM"), "length_unit", 3, "did you mean 'mm'"),
+    "unit misspelt": (task("length_unit: mm", "length_unit: mmm"), "length_unit", 3, "did you mean 'mm'"),
     "topology": (task("topology: any", "topology: pumma"), "topology", 7, "did you mean 'puma'"),
     "topology a list": (task("topology: any", "topology: [any]"), "topology", 7, "'any' list"),
     "objective": (task("least_squares", "minmax"), "objective", 11, "did you mean 'minimax'"),
@@ -477,7 +495,8 @@ class TestWrongFiles:
         assert keys == ["robot.link.min_bend_radius", "robot.rigid_link"]
 
     def test_a_flat_triangle_is_one(self):
-        parse_task(inline("d34: 49", "d34: 5").replace("d12", "length_unit: m\n  d12"))  # 460 - 455 = 5
+        metres = inline("d34: 49", "d34: 5").replace("d12", "length_unit: m\n  d12")  # 460 - 455 = 5
+        parse_task(metres.replace("100, 200, 300", "1e5, 2e5, 3e5"))
         parse_task(inline("d34: 49", "d34: 0.3").replace("455", "0.1").replace("460", "0.2"))
 
     @pytest.mark.parametrize("make", [lambda path: path / "none.yaml", lambda path: path, lambda _: "a\0b"])
@@ -499,6 +518,10 @@ class TestWrongFiles:
         levels = "".join(f"b{i}: &b{i} [{', '.join([f'*b{i - 1}'] * 10)}]\n" for i in range(1, 12))
         mistakes = mistakes_in(parse_task, "b0: &b0 [ha, ha]\n" + levels)
         assert sum("aliases" in mistake.message for mistake in mistakes) == 110
+
+    def test_numbers_that_differ_are_printed_so_that_they_differ(self):
+        (mistake,) = mistakes_in(parse_task, inline("d34: 49", "d34: 4.9999999"))
+        assert "at least 5, more than d34 = 4.9999999" in mistake.message
 
 
 class TestRobotFiles:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -13,6 +13,17 @@ from synth.version import __version__
 
 if TYPE_CHECKING:
     from synth.cli.exit_codes import ExitCode
+
+
+class Seconds(click.FloatRange):
+    """A time: a number in a range, and no NaN, which is in every range."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Return the number."""
+        seconds = super().convert(value, param, ctx)
+        if math.isnan(seconds):
+            self.fail(f"{value!r} is not a number of seconds.", param, ctx)
+        return float(seconds)
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -52,7 +63,7 @@ def main() -> None:
     help="If a target is missed, say which limit blocks the task and what would release it.",
 )  # fmt: skip
 @click.option(
-    "--time-limit", metavar="S", type=click.FloatRange(min=0.0, min_open=True), default=math.inf,
+    "--time-limit", metavar="S", type=Seconds(min=0.0, min_open=True), default=math.inf,
     help="Stop after this many seconds and give the best shape so far.  [default: none]",
 )  # fmt: skip
 def solve(

@@ -11,16 +11,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from synth.checks import refuse_unless
 from synth.errors import SynthError, in_a_line
 from synth.export.markers import markers_csv
 from synth.export.sheet import draw_sheet
 from synth.export.solution_json import solution_to_json
 from synth.guide import make_guide
+from synth.synthesis import Solution
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
-
-    from synth.synthesis import Solution
 
 SOLUTION_FILES = ("solution.json", "guide.pdf", "markers.csv")
 
@@ -74,6 +74,7 @@ def write_what_can_be(solution: Solution, directory: str | os.PathLike[str]) -> 
     Raises:
         SynthError: They cannot be written. Files of an earlier run are then as they were.
     """
+    refuse_unless("solution", solution, Solution)
     guide = make_guide(solution.task, solution.designs[0]) if solution.designs else None
     files = {
         "solution.json": json_bytes(solution_to_json(solution)),

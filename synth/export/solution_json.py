@@ -5,16 +5,18 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from synth.checks import refuse_unless
 from synth.export.plain import plain
 from synth.export.task_json import arcs_to_json, task_to_json
 from synth.guide import MARKERS, make_guide
+from synth.synthesis import Bound, Solution
 from synth.synthesis.solution import target_results
 from synth.version import __version__
 
 if TYPE_CHECKING:
     from synth.guide import Guide
     from synth.robot import Arm
-    from synth.synthesis import Bound, Design, Motion, Solution
+    from synth.synthesis import Design, Motion
     from synth.task import Task
 
 SCHEMA = "synth.solution/2"
@@ -35,6 +37,7 @@ def solution_to_json(solution: Solution) -> dict[str, Any]:
         Dictionaries, lists, strings, numbers and None, for `json.dumps(..., allow_nan=False)`: what
         JSON cannot hold, NaN and infinity, is None.
     """
+    refuse_unless("solution", solution, Solution)
     task, designs = solution.task, solution.designs
     guide = make_guide(task, designs[0]) if designs else None
     shape = dict.fromkeys(_SHAPE_FIELDS) if guide is None else _shape(guide)

@@ -17,8 +17,8 @@ most six (`designs_through_five`, `designs_through_four`), fewer have families (
 have targets in a plane or on a sphere (`planes_through`, `spheres_through`, `circle_through`). Every arm
 has one `cognate`, another arm with the same surface.
 
-Beside the arm there are solids to keep clear of (`Box`, `Capsule`), and least values that are certain
-(`least_values`).
+Beside the arm there are solids to keep clear of (`Sphere`, `Box`, `Capsule`), and least values that are
+certain (`least_values`).
 
 SI units; axis 1 is z and P1 the origin; all values are frozen. Plain numpy, and no solver.
 """
@@ -48,7 +48,7 @@ from synth.geometry.exact import (
 from synth.geometry.gamma import WorkspaceSurface, distance_polynomials, gamma_determinant
 from synth.geometry.invariants import Invariants
 from synth.geometry.least_value import least_values
-from synth.geometry.solids import Box, Capsule, Solid
+from synth.geometry.solids import Box, Capsule, Solid, Sphere
 from synth.geometry.trigonometric import critical_angles, sampling_angles
 
 __all__ = [
@@ -61,6 +61,7 @@ __all__ = [
     "Invariants",
     "PlaneFamily",
     "Solid",
+    "Sphere",
     "SphereFamily",
     "SweptCircle",
     "WorkspaceSurface",

@@ -1,4 +1,4 @@
-"""Convex solids that a robot keeps clear of: boxes, capsules and, as capsules of no length, spheres.
+"""Convex solids that a robot keeps clear of: spheres, boxes and capsules.
 
 Each knows three things: the signed distance of points, the outward direction there, and its support
 function. With them a solid is kept apart from a convex piece of a robot by a plane: outward direction n
@@ -9,24 +9,65 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+from synth.arrays import FloatArray, compared_by_value
+from synth.checks import Checks
 
 _UP = np.array([0.0, 0.0, 1.0])
 
 
+@compared_by_value
+@dataclass(frozen=True, eq=False)
+class Sphere:
+    """A ball.
+
+    Attributes:
+        centre: Its centre, shape (3,), m.
+        radius: Its radius, m.
+    """
+
+    centre: FloatArray
+    radius: float
+
+    def __post_init__(self) -> None:
+        checks = Checks(self)
+        checks.array("centre", (3,))
+        checks.number("radius", above=0.0)
+        checks.refuse()
+
+    @property
+    def ends(self) -> FloatArray:
+        """Its centre twice, shape (2, 3), m: a sphere is a capsule of no length."""
+        return np.stack([self.centre, self.centre])
+
+    def distance(self, points: FloatArray) -> FloatArray:
+        """Return the signed distance of points, shape (..., 3), m; shape (...), negative inside."""
+        return np.asarray(np.linalg.norm(points - self.centre, axis=-1) - self.radius)
+
+    def outward(self, points: FloatArray) -> FloatArray:
+        """Return the direction in which the distance grows, shape (..., 3), without unit."""
+        away = points - self.centre
+        length = np.linalg.norm(away, axis=-1, keepdims=True)
+        return np.where(length > 0.0, away / np.where(length > 0.0, length, 1.0), _UP)
+
+    def support(self, directions: FloatArray) -> FloatArray:
+        """Return the largest n . x over the solid for unit vectors n, shape (..., 3); shape (...), m."""
+        return np.asarray(directions @ self.centre + self.radius)
+
+    def seen_from(self, position: FloatArray, yaw: float) -> Sphere:
+        """Return the same solid in a frame at `position`, shape (3,), m, turned by `yaw`, rad, about z."""
+        return Sphere((self.centre - position) @ _about_z(yaw), self.radius)
+
+
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Capsule:
     """All points within a radius of a segment.
 
     Attributes:
-        ends: Ends of the segment, shape (2, 3), m; for a sphere both are its centre.
+        ends: Ends of the segment, shape (2, 3), m.
         radius: The radius, m.
     """
 
@@ -34,12 +75,10 @@ class Capsule:
     radius: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "ends", frozen(self.ends))
-
-    @classmethod
-    def sphere(cls, centre: ArrayLike, radius: float) -> Capsule:
-        """Return a sphere."""
-        return cls(np.array([centre, centre], dtype=np.float64), radius)
+        checks = Checks(self)
+        checks.array("ends", (2, 3))
+        checks.number("radius", above=0.0)
+        checks.refuse()
 
     def distance(self, points: FloatArray) -> FloatArray:
         """Return the signed distance of points, shape (..., 3), m; shape (...), negative inside."""
@@ -73,6 +112,7 @@ class Capsule:
         return np.asarray(across / np.linalg.norm(across))
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Box:
     """A box with vertical edges.
@@ -88,8 +128,11 @@ class Box:
     yaw: float = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "centre", frozen(self.centre))
-        object.__setattr__(self, "size", frozen(self.size))
+        checks = Checks(self)
+        checks.array("centre", (3,))
+        checks.array("size", (3,), above=0.0)
+        checks.number("yaw")
+        checks.refuse()
 
     def distance(self, points: FloatArray) -> FloatArray:
         """Return the signed distance of points, shape (..., 3), m; shape (...), negative inside."""
@@ -121,7 +164,7 @@ class Box:
         return np.asarray((points - self.centre) @ _about_z(self.yaw))
 
 
-Solid = Box | Capsule
+Solid = Sphere | Box | Capsule
 
 
 def _about_z(angle: float) -> FloatArray:

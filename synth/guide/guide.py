@@ -9,15 +9,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import FloatArray, frozen
+from synth.checks import refuse_unless
 from synth.guide.posture import HoldPosture, hold_posture
 from synth.guide.sensitivity import ShapeTolerance, shape_tolerance
 from synth.robot import BasePose
-from synth.synthesis import MOST_MOTIONS, hand_forgiveness, motions
+from synth.synthesis import MOST_MOTIONS, Design, hand_forgiveness, motions
+from synth.task import Task
 
 if TYPE_CHECKING:
     from synth.robot import Arm, LinkShape
-    from synth.synthesis import Design, Forgiveness, Motion
-    from synth.task import Task
+    from synth.synthesis import Forgiveness, Motion
 
 MARKERS = ("P1", "P2", "P3", "P4")
 LINK_END = "END"
@@ -124,6 +125,8 @@ def make_guide(task: Task, design: Design) -> Guide:
         task: What is asked: its targets decide how precisely the shape must be held.
         design: The shape, and what the independent check says of it.
     """
+    refuse_unless("task", task, Task)
+    refuse_unless("design", design, Design)
     arm, met = design.arm, design.verification.found
     stations, posture = _stations(arm.shape.length), hold_posture(task, arm)
     return Guide(

@@ -5,7 +5,8 @@ from synth.robot.arm import Arm, JointBranches
 from synth.robot.base import BasePose
 from synth.robot.clearance import MOST_CLEARANCE, ArmBody
 from synth.robot.end_pose import ANYWHERE, PoseMiss, pose_miss
-from synth.robot.hardware import Interval, JointLimits, MalleableLink, RigidLink, Robot
+from synth.robot.hardware import JointLimits, MalleableLink, RigidLink, Robot
+from synth.robot.interval import Interval
 from synth.robot.kinematics import Kinematics
 from synth.robot.link import LinkShape, arc_motion, chain_end, chain_points
 from synth.robot.pose_proofs import why_no_link

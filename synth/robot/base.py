@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value
+from synth.checks import Checks
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class BasePose:
     """The pose of the robot's base frame in the task frame.
@@ -27,7 +29,10 @@ class BasePose:
     yaw: float = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "position", frozen(self.position))
+        checks = Checks(self)
+        checks.array("position", (3,))
+        checks.number("yaw")
+        checks.refuse()
 
     @property
     def rotation(self) -> FloatArray:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.robot.arc_chains import ArcChains
     from synth.robot.chain_limits import Projection
-    from synth.robot.hardware import Interval
+    from synth.robot.interval import Interval
 
 ARRIVED = 1e-10  # what may be left of an aim, in units of the bend radius and rad
 

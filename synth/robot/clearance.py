@@ -98,7 +98,8 @@ class ArmBody:
         """
         end = self.arm.end_frame[1]
         tip = self.arm.kinematics.forward(0.0, theta2)
-        return np.asarray(end + (along / self.rod_length)[..., None] * (tip - end))
+        share = along / self.rod_length if self.rod_length > 0.0 else np.zeros_like(along)
+        return np.asarray(end + share[..., None] * (tip - end))  # a rod of no length is its own end
 
     def lowest(self) -> float:
         """Return the height of the lowest point of the tube beyond its mount, m; exact."""

@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
-    from synth.robot.hardware import Interval, JointLimits
+    from synth.robot.hardware import JointLimits
+    from synth.robot.interval import Interval
     from synth.robot.kinematics import Kinematics
 
 # Over joint 2 the miss has few valleys, as it has few harmonics; a full turn's grid has a spacing of 2 deg.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.robot.hardware import Interval
+from synth.robot.interval import Interval
 from synth.robot.turn import into_turn, turned
 
 if TYPE_CHECKING:

@@ -8,37 +8,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.checks import Checks, told_apart
+from synth.robot.interval import Interval, check_interval, check_lengths
+
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from synth.arrays import FloatArray
 
 
-@dataclass(frozen=True)
-class Interval:
-    """A closed interval `[lower, upper]`; a fixed number is an interval of no width."""
-
-    lower: float
-    upper: float
-
-    @classmethod
-    def fixed(cls, value: float) -> Interval:
-        """Return the interval that holds one value."""
-        return cls(value, value)
-
-    @property
-    def is_fixed(self) -> bool:
-        """Whether there is nothing to choose."""
-        return self.lower == self.upper
-
-    @property
-    def middle(self) -> float:
-        """The midpoint of the interval."""
-        return 0.5 * (self.lower + self.upper)
-
-    def contains(self, value: float, slack: float = 0.0) -> bool:
-        """Whether `value` lies in the interval widened by `slack` at both ends."""
-        return self.lower - slack <= value <= self.upper + slack
+_TURN_AND_ROUNDING = 2.0 * math.pi + 1e-9
+_FULL_TURN_OF_BASE, _FULL_TURN_OF_SECOND = Interval(-math.pi, math.pi), Interval(0.0, 2.0 * math.pi)
+_FLAT = 1e-9  # of d34: a triangle that is flat but for rounding is one
 
 
 @dataclass(frozen=True)
@@ -56,6 +37,14 @@ class MalleableLink:
     min_bend_radius: float
     diameter: float = 0.0
     max_total_bend: float = math.inf
+
+    def __post_init__(self) -> None:
+        checks = Checks(self)
+        check_lengths(checks, self, "length")
+        checks.number("min_bend_radius", above=0.0)
+        checks.number("diameter", least=0.0)
+        checks.number("max_total_bend", above=0.0, most=math.inf)
+        checks.refuse()
 
     @property
     def max_curvature(self) -> float:
@@ -77,6 +66,13 @@ class RigidLink:
     d45: Interval
     diameter: float = 0.0
 
+    def __post_init__(self) -> None:
+        checks = Checks(self)
+        check_lengths(checks, self, "d35")
+        check_lengths(checks, self, "d45")
+        checks.number("diameter", least=0.0)
+        checks.refuse()
+
     @property
     def is_fixed(self) -> bool:
         """Whether the rigid link is given and not to be designed."""
@@ -92,8 +88,14 @@ class JointLimits:
         second: Range of theta2; 0 is folded back onto the malleable link, pi is straight on.
     """
 
-    base: Interval = Interval(-math.pi, math.pi)
-    second: Interval = Interval(0.0, 2.0 * math.pi)
+    base: Interval = _FULL_TURN_OF_BASE
+    second: Interval = _FULL_TURN_OF_SECOND
+
+    def __post_init__(self) -> None:
+        checks = Checks(self)
+        check_interval(checks, self, "base")
+        check_interval(checks, self, "second")
+        checks.refuse()
 
     def contain(self, joints: FloatArray, slack: float = 1e-9) -> NDArray[np.bool_]:
         """Whether pairs (theta1, theta2), shape (..., 2), rad, are within the limits; shape (...)."""
@@ -124,6 +126,25 @@ class Robot:
     rigid_link: RigidLink
     joint_limits: JointLimits = JointLimits()
 
+    def __post_init__(self) -> None:
+        checks = Checks(self)
+        checks.name("name")
+        checks.number("d12", above=0.0)
+        checks.is_a("link", MalleableLink)
+        checks.number("d34", above=0.0)
+        checks.number("tip_offset")
+        rigid = self.rigid_link
+        if checks.is_a("rigid_link", RigidLink) and not checks.found_in("d34"):
+            d35, d45 = ((one.lower, one.upper) for one in (rigid.d35, rigid.d45))
+            if wrong := no_triangle(self.d34, d35, d45):
+                checks.report("rigid_link", wrong)
+        if checks.is_a("joint_limits", JointLimits):
+            for key, limits in (("base", self.joint_limits.base), ("second", self.joint_limits.second)):
+                if limits.upper - limits.lower > _TURN_AND_ROUNDING:
+                    wide = f"must be at most one turn wide, but is {limits.upper - limits.lower:g} rad"
+                    checks.report(f"joint_limits.{key}", wide)
+        checks.refuse()
+
     def end_effector_circle(self, d35: ArrayLike, d45: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Return where and how wide P5 circles about the second axis.
 
@@ -139,3 +160,25 @@ class Robot:
         s35, s45 = np.square(d35), np.square(d45)
         from_p3 = (s35 - s45 + self.d34**2) / (2.0 * self.d34)
         return from_p3 - self.tip_offset, np.sqrt(np.maximum(s35 - from_p3**2, 0.0))
+
+
+def no_triangle(d34: float, d35: tuple[float, float], d45: tuple[float, float]) -> str:
+    """Return why no triangle P3 P4 P5 has sides in these ranges, in any unit of length, or nothing.
+
+    Args:
+        d34: Distance of P3 and P4.
+        d35: Least and largest distance of P3 and P5.
+        d45: Least and largest distance of P4 and P5.
+    """
+    slack, longest = _FLAT * d34, d35[1] + d45[1]
+    if longest < d34 - slack:
+        most, needed = told_apart(longest, d34)
+        return f"no triangle P3 P4 P5: d35 + d45 is at most {most}, less than d34 = {needed}"
+    for longer, shorter, gap in (("d35", "d45", d35[0] - d45[1]), ("d45", "d35", d45[0] - d35[1])):
+        if gap > d34 + slack:
+            least, allowed = told_apart(gap, d34)
+            return (
+                f"no triangle P3 P4 P5: {longer} exceeds {shorter} by at least {least}, "
+                f"more than d34 = {allowed}"
+            )
+    return ""

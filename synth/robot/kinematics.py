@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from synth.arrays import FloatArray
-    from synth.robot.hardware import Interval
+    from synth.robot.interval import Interval
 
 _NEWTON_STEPS = 6
 

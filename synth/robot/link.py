@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value
+from synth.checks import Checks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -84,6 +85,7 @@ def _along(curvatures: ArrayLike, lengths: ArrayLike) -> Iterator[tuple[FloatArr
         yield rotation, position
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class LinkShape:
     """One shape of the malleable link; it starts at P2 along +z of the base frame.
@@ -97,8 +99,17 @@ class LinkShape:
     lengths: FloatArray
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "curvatures", frozen(self.curvatures))
-        object.__setattr__(self, "lengths", frozen(self.lengths))
+        checks = Checks(self)
+        is_bent = checks.array("curvatures", (None, 2))
+        if checks.array("lengths", (None,), least=0.0) and is_bent:
+            if len(self.lengths) != len(self.curvatures):
+                missing = (
+                    f"must be one for each of the {len(self.curvatures)} arcs, but are {len(self.lengths)}"
+                )
+                checks.report("lengths", missing)
+            elif not self.lengths.any():
+                checks.report("lengths", "must be greater than 0 together")
+        checks.refuse()
 
     @property
     def length(self) -> float:

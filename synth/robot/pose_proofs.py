@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.robot.hardware import Interval
+from synth.robot.interval import Interval
 from synth.robot.reach import LinkReach
 from synth.rounding import Unit, at_least, rounded_down
 

@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from synth.arrays import FloatArray
-    from synth.robot.hardware import Interval, MalleableLink
+    from synth.robot.hardware import MalleableLink
+    from synth.robot.interval import Interval
     from synth.robot.link import LinkShape
 
 POSITION_TOLERANCE = 1e-9  # m

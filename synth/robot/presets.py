@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from synth.robot.hardware import Interval, JointLimits, MalleableLink, RigidLink, Robot
+from synth.robot.hardware import JointLimits, MalleableLink, RigidLink, Robot
+from synth.robot.interval import Interval
 
 PRESETS: dict[str, Robot] = {
     # The published prototype. Distances and joint limits: Clark and Rojas (2020), caption of the

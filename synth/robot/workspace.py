@@ -11,7 +11,8 @@ import numpy as np
 
 from synth.arrays import FloatArray, frozen
 from synth.geometry import critical_angles, sampling_angles
-from synth.robot.hardware import Interval, JointLimits
+from synth.robot.hardware import JointLimits
+from synth.robot.interval import Interval
 from synth.robot.turn import into_turn
 
 if TYPE_CHECKING:

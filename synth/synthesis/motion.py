@@ -15,8 +15,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import FloatArray, frozen
+from synth.checks import refuse_unless
 from synth.robot import ArmBody, turned
-from synth.synthesis.solution import joints_reaching
+from synth.synthesis.solution import Design, joints_reaching
+from synth.task import Task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,8 +26,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.geometry import Solid
-    from synth.synthesis.solution import Design
-    from synth.task import Task
 
 MOST_MOTIONS = 50  # of more targets nobody asks for the ways between them
 
@@ -88,6 +88,8 @@ def motions(task: Task, design: Design) -> tuple[Motion, ...]:
     Returns:
         One motion less than there are targets.
     """
+    refuse_unless("task", task, Task)
+    refuse_unless("design", design, Design)
     room = _Room(task, design)
     postures = joints_reaching(task, design)
     # To each posture of a target the best travel so far, rad, and the postures and ways that it takes.

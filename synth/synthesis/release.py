@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.checks import refuse_unless
 from synth.robot import BasePose
 from synth.synthesis.relaxed_limits import limits_of, without_limits
-from synth.synthesis.solution import Release
+from synth.synthesis.solution import Release, Solution
 from synth.synthesis.solve import follow
 from synth.synthesis.verification import verify
 from synth.synthesis.watch import Watch
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.synthesis.relaxed_limits import Limit
-    from synth.synthesis.solution import Design, Solution
+    from synth.synthesis.solution import Design
     from synth.synthesis.watch import Progress
     from synth.task import Task
 
@@ -59,6 +60,7 @@ def explain(
         how far the search got. Should a shape turn up that meets the task as it is, the solution with
         this shape.
     """
+    refuse_unless("solution", solution, Solution)
     if solution.found:
         return solution
     watch = Watch(time_limit, stop=stop, report=progress)

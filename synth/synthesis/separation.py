@@ -146,9 +146,10 @@ def _self_overlaps(
     neighbours = np.abs(along[:, :, None] - along[:, None]) < np.pi * robot.link.min_bend_radius
     of_tube = thickness + margin - np.where(neighbours, np.inf, apart).min(axis=(1, 2))
     length = np.linalg.norm(rod, axis=-1, keepdims=True)
+    direction = rod / np.where(length > 0.0, length, 1.0)  # none of a rod of no length
     from_end = tube - end
-    reached = np.clip(from_end @ np.swapaxes(rod / length, 1, 2), thickness, np.swapaxes(length, 1, 2))
-    off = from_end[:, :, None] - reached[..., None] * (rod / length)[:, None]
+    reached = np.clip(from_end @ np.swapaxes(direction, 1, 2), thickness, np.swapaxes(length, 1, 2))
+    off = from_end[:, :, None] - reached[..., None] * direction[:, None]
     joint = along > population.length[:, None] - thickness
     apart = np.where(joint[..., None], np.inf, np.linalg.norm(off, axis=-1))
     of_rod = 0.5 * (thickness + robot.rigid_link.diameter) + margin - apart.min(axis=1)

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from synth.synthesis.arguments import checked_task
 from synth.synthesis.many_targets import part_of
 from synth.synthesis.search import ALTERNATIVES, Search
 from synth.synthesis.watch import Watch
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    import os
+    from collections.abc import Callable, Mapping, Sequence
 
     from synth.synthesis.solution import Design, Solution
     from synth.synthesis.watch import Progress
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def solve(
-    task: Task,
+    task: Task | str | os.PathLike[str] | Mapping[str, object],
     *,
     seed: int = 0,
     warm_start: Solution | None = None,
@@ -31,7 +33,7 @@ def solve(
     """Find a shape of the malleable link with which the end effector reaches the targets.
 
     Args:
-        task: What is asked.
+        task: What is asked: a task, the path of its file, or a mapping as in a file.
         seed: Seed of the search.
         warm_start: The solution of a task nearby, of the same robot: targets a few millimetres or
             centimetres away. If one of its two best shapes, polished for this task, reaches every target
@@ -47,7 +49,13 @@ def solve(
     Returns:
         The solution, whatever was found; its status says what it is worth. Where something broke that nobody
         foresaw, what was found before, and in `reasons` what broke.
+
+    Raises:
+        InputError: An argument is wrong, or the sizes of the task cannot be meant; with every mistake.
     """
+    task = checked_task(
+        task, seed=seed, warm_start=warm_start, alternatives=alternatives, time_limit=time_limit
+    )
     watch = Watch(time_limit, stop=stop, report=progress)
     search = Search(task, part_of(task, seed), seed, watch, alternatives)
     near = warm_start.designs if warm_start is not None and warm_start.task.robot == task.robot else ()

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import FloatArray, frozen
-from synth.robot import ArmBody
-from synth.task import Topology
+from synth.checks import refuse_unless
+from synth.robot import Arm, ArmBody
+from synth.task import Task, Topology
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from synth.robot import Arm, Interval
-    from synth.task import Task
+    from synth.robot import Interval
 
 # What rounding may do: a micrometre, a microradian.
 _LENGTH_SLACK = 1e-6
@@ -89,6 +89,8 @@ def verify(task: Task, arm: Arm, joints: FloatArray | None = None) -> Verificati
     Returns:
         The misses by forward kinematics and every limit that is broken.
     """
+    refuse_unless("task", task, Task)
+    refuse_unless("arm", arm, Arm)
     targets = task.table.positions
     closest, _ = arm.closest_joints(targets)
     branches = arm.inverse_kinematics(targets)

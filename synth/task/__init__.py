@@ -2,7 +2,7 @@
 
 from synth.robot import BasePose
 from synth.task.model import DEFAULT_TOLERANCE, Objective, Obstacle, PointTarget, TargetTable, Task, Topology
-from synth.task.reading import load_robot, load_task, parse_task
+from synth.task.reading import as_task, load_robot, load_task, parse_task
 from synth.task.schema import task_schema
 
 __all__ = [
@@ -14,6 +14,7 @@ __all__ = [
     "TargetTable",
     "Task",
     "Topology",
+    "as_task",
     "load_robot",
     "load_task",
     "parse_task",

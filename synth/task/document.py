@@ -38,6 +38,11 @@ def key_text(path: KeyPath) -> str:
     return text
 
 
+def key_path(text: str) -> KeyPath:
+    """Return the path that `key_text` wrote, of keys that need no quotes."""
+    return tuple(int(part) if part.isdigit() else part for part in re.findall(r"[^.\[\]]+", text))
+
+
 class Document:
     """The content of an input as plain values, and the mistakes found in it so far.
 
@@ -72,6 +77,12 @@ class Document:
     def adopt(self, path: KeyPath, mistake: Mistake) -> None:
         """Note a mistake in another file, which a key refers to."""
         self._found.append((self._nearest(path), mistake))
+
+    def refuse(self, error: InputError, path: KeyPath = ()) -> InputError:
+        """Return all mistakes and, at their keys below a path, those that a value of this input has."""
+        for mistake in error.mistakes:
+            self.report((*path, *key_path(mistake.key)), mistake.message)
+        return self.error()
 
     @property
     def is_wrong(self) -> bool:

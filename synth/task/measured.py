@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -46,6 +46,7 @@ class Precision:
         return cls(sigma, _BOUND_OF_SIGMA * sigma, is_rounding=False)
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class MeasuredDistances:
     """Distances between points P1, P2, ...; not every pair need be there.
@@ -146,6 +147,7 @@ class MeasuredDistances:
         )
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Measurement:
     """One shape of a robot, as it was measured.

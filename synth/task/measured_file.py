@@ -11,12 +11,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import FloatArray, frozen
+from synth.errors import InputError, Mistake
 from synth.robot import Interval, RigidLink
 from synth.task.document import Document, KeyPath
+from synth.task.hardware_distances import off_the_hardware
 from synth.task.measured import MeasuredDistances, Measurement, Precision
 from synth.task.measured_schema import ConfigurationEntry, MeasuredFile
-from synth.task.reading import PER_METRE, named_robot, to_robot
+from synth.task.reading import as_path, named_robot, robot_within
 from synth.task.schema import RobotEntry
+from synth.task.sizes import PER_METRE
 from synth.task.wording import validate
 from synth.task.yaml_text import read_file, read_text
 
@@ -44,7 +47,7 @@ def load_measurements(path: str | os.PathLike[str]) -> tuple[Measurement, ...]:
         InputError: The file, or the robot file it names, cannot be read or is wrong; with every
             mistake, in the order of the file.
     """
-    path = Path(path)
+    path = as_path(path)
     return _measurements(read_file(path), directory=path.parent, name=path.stem)
 
 
@@ -78,8 +81,7 @@ def _measurements(document: Document, directory: Path, name: str) -> tuple[Measu
         raise document.error()
     per_metre = PER_METRE[file.length_unit]
     if isinstance(file.robot, RobotEntry):
-        unit = file.length_unit if file.robot.length_unit is None else file.robot.length_unit
-        robot = to_robot(file.robot, PER_METRE[unit], "inline robot")
+        robot = robot_within(document, file.robot, file.length_unit)
     assert robot is not None, "a robot is named or described"  # noqa: S101 - for the type checker
     entries: dict[str, tuple[KeyPath, ConfigurationEntry]] = {file.name or name: ((), file)}
     if "configurations" in file.model_fields_set:
@@ -89,11 +91,16 @@ def _measurements(document: Document, directory: Path, name: str) -> tuple[Measu
         _report_coincident_markers(document, path, entry)
     if document.is_wrong:
         raise document.error()
-    common = _precision(file, per_metre)
-    return tuple(
-        _measurement(key, entry, robot, _precision(entry, per_metre) or common, per_metre)
-        for key, (_, entry) in entries.items()
-    )
+    common, measurements = _precision(file, per_metre), []
+    for key, (path, entry) in entries.items():
+        try:
+            precision = _precision(entry, per_metre) or common
+            measurements.append(_measurement(key, entry, robot, precision, per_metre))
+        except InputError as error:
+            document.refuse(error, path)
+    if document.is_wrong:
+        raise document.error()
+    return tuple(measurements)
 
 
 def _report_what_is_missing(document: Document, content: Mapping[str, object]) -> None:
@@ -182,6 +189,10 @@ def _measurement(
             sigma=_NOISY_COORDINATE * precision.sigma,
             bound=precision.bound * (_ROUNDED_COORDINATE if precision.is_rounding else _NOISY_COORDINATE),
         )
+    is_stated = markers is None
+    if wrong := off_the_hardware(measured, robot, of_distances.bound):
+        keys = {name: f"distances.{name}" if is_stated else "markers" for name in wrong}
+        raise InputError([Mistake(sentence, key=keys[name]) for name, sentence in wrong.items()])
     rigid = robot.rigid_link
     known = {"d12": robot.d12, "d34": robot.d34}
     known |= {key: i.lower for key, i in (("d35", rigid.d35), ("d45", rigid.d45)) if i.is_fixed}

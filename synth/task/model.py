@@ -6,18 +6,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
-from synth.robot import BasePose
+from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.checks import LONGEST_NAME, SMALLEST, Checks, described, given_twice, wrong_name, wrong_type
+from synth.geometry import Box, Capsule, Sphere
+from synth.robot import BasePose, LinkShape, Robot
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.geometry import Solid
-    from synth.robot import LinkShape, Robot
 
 DEFAULT_TOLERANCE = 1e-3  # m: twice the error of the motion capture that measured the prototype
 
@@ -39,6 +40,7 @@ class Objective(Enum):
     MINIMAX = "minimax"
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class PointTarget:
     """A point that the end effector shall reach: one kind of target.
@@ -56,9 +58,21 @@ class PointTarget:
     weight: float = 1.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "position", frozen(self.position))
+        checks = Checks(self)
+        checks.name("name")
+        checks.array("position", (3,))
+        checks.number("tolerance", least=SMALLEST)
+        checks.number("weight", least=SMALLEST)
+        checks.refuse()
 
 
+class _CheckedNames(tuple[str, ...]):
+    """Names that were found right: those of a million points are looked at once, not with each new table."""
+
+    __slots__ = ()
+
+
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class TargetTable(Sequence[PointTarget]):
     """Targets in columns: as a sequence it is one of `PointTarget`, made when asked for.
@@ -78,8 +92,14 @@ class TargetTable(Sequence[PointTarget]):
     weights: FloatArray
 
     def __post_init__(self) -> None:
-        for column in ("positions", "tolerances", "weights"):
-            object.__setattr__(self, column, frozen(getattr(self, column)))
+        checks = Checks(self)
+        if not isinstance(self.names, _CheckedNames):
+            _check_names(checks, self.names)
+        count = len(self.names)
+        checks.array("positions", (count, 3), rows="targets[{}].position")
+        checks.array("tolerances", (count,), least=SMALLEST, rows="targets[{}].tolerance")
+        checks.array("weights", (count,), least=SMALLEST, rows="targets[{}].weight")
+        checks.refuse()
 
     @classmethod
     def of(cls, targets: Sequence[PointTarget]) -> TargetTable:
@@ -125,6 +145,7 @@ class TargetTable(Sequence[PointTarget]):
         )
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Obstacle:
     """A solid that link, rigid link and end effector keep clear of.
@@ -137,7 +158,14 @@ class Obstacle:
     name: str
     solid: Solid
 
+    def __post_init__(self) -> None:
+        checks = Checks(self)
+        checks.name("name")
+        checks.is_a("solid", (Sphere, Box, Capsule))
+        checks.refuse()
 
+
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Task:
     """A synthesis task: reach the targets with one shape of the link.
@@ -166,6 +194,28 @@ class Task:
     obstacles: tuple[Obstacle, ...] = ()
     current: LinkShape | None = None
 
+    def __post_init__(self) -> None:
+        checks = Checks(self)
+        checks.name("name")
+        checks.is_a("robot", Robot)
+        # In columns, so that a task like this one but for its floor costs no look at a million targets.
+        if not isinstance(self.targets, TargetTable) and _are_all(
+            checks, "targets", self.targets, PointTarget
+        ):
+            checks.put("targets", TargetTable.of(self.targets))
+        if isinstance(self.targets, TargetTable) and not len(self.targets):
+            checks.report("targets", "must hold one target at least, but is empty")
+        checks.is_a("base", BasePose)
+        if self.floor is not None:
+            checks.number("floor")
+        checks.word("topology", Topology)
+        checks.word("objective", Objective)
+        if _are_all(checks, "obstacles", self.obstacles, Obstacle):
+            checks.put("obstacles", tuple(self.obstacles))
+        if self.current is not None:
+            checks.is_a("current", LinkShape)
+        checks.refuse()
+
     @cached_property
     def table(self) -> TargetTable:
         """The targets in columns."""
@@ -191,3 +241,47 @@ class Task:
         """The obstacles in the base frame."""
         base = self.base
         return tuple(obstacle.solid.seen_from(base.position, base.yaw) for obstacle in self.obstacles)
+
+
+def _check_names(checks: Checks, given: Any) -> None:
+    """Check the names of a table of targets."""
+    if not isinstance(given, Sequence) or isinstance(given, str):
+        checks.report("names", f"must be a list of texts, but is {described(given)}")
+        checks.refuse()
+    if _wrong_names(given):
+        for index, name in enumerate(given):
+            if wrong := wrong_name(name):
+                checks.report(f"targets[{index}].name", wrong)
+    else:
+        _report_names_given_twice(checks, "targets", given)
+    checks.put("names", _CheckedNames(given))
+
+
+def _wrong_names(names: Sequence[str]) -> bool:
+    """Whether one of many names is wrong; those of a million points are looked at together."""
+    try:
+        together = "".join(names)
+    except TypeError:  # one is no text
+        return True
+    longest = max(map(len, names), default=0)
+    is_one_line = together.isprintable() and longest <= LONGEST_NAME
+    return not (is_one_line and all(names) and not any(map(str.isspace, names)))
+
+
+def _report_names_given_twice(checks: Checks, key: str, names: Sequence[str]) -> bool:
+    """Report names that stand in a list twice; whether there are any."""
+    twice = given_twice(names)
+    for index, first in twice:
+        checks.report(f"{key}[{index}].name", f"{names[index]!r} is the name of {key}[{first}] already")
+    return bool(twice)
+
+
+def _are_all(checks: Checks, key: str, given: Any, kind: type) -> bool:
+    """Whether a field is a sequence of values of one kind, each with its own name."""
+    if not isinstance(given, Sequence) or isinstance(given, str):
+        checks.report(key, f"must be a list of {kind.__name__}, but is {described(given)}")
+        return False
+    wrong_ones = [(index, wrong) for index, one in enumerate(given) if (wrong := wrong_type(one, kind))]
+    for index, wrong in wrong_ones[:10]:
+        checks.report(f"{key}[{index}]", wrong)
+    return not (wrong_ones or _report_names_given_twice(checks, key, [one.name for one in given]))

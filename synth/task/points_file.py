@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+import re
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 _MAX_BYTES = 200_000_000
 _COLUMNS = ["x", "y", "z"]
 _MISTAKES_AT_MOST = 10  # named one by one; of a file of another kind every line is wrong
+_NUMBER = re.compile(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?")
+_QUOTED_AT_MOST = 20  # characters of a cell
 
 
 def read_points(path: Path) -> FloatArray:
@@ -49,12 +51,12 @@ def read_points(path: Path) -> FloatArray:
     start = first + 1 if first is not None and _is_header(lines[first]) else 0
     rows = [line for line in lines[start:] if line.strip()]
     try:
-        # The fast way; whatever is wrong is looked for line by line.
+        # The fast way; whatever is wrong is looked for line by line, by the same notion of a number.
         points = np.loadtxt(rows, delimiter=",", ndmin=2, comments=None) if rows else None
     except ValueError:
         points = None
     if points is None or points.shape[1] != 3 or not np.all(np.abs(points) <= LARGEST):
-        raise InputError(_mistakes(lines, start, str(path)))
+        raise InputError(_mistakes(lines, start, path))
     return points
 
 
@@ -62,27 +64,33 @@ def _is_header(line: str) -> bool:
     return [cell.strip().lower() for cell in line.split(",")] == _COLUMNS
 
 
-def _mistakes(lines: list[str], start: int, file: str) -> list[Mistake]:
-    """Return what is wrong with lines of points, each with its line."""
+def _mistakes(lines: list[str], start: int, path: Path) -> list[Mistake]:
+    """Return what is wrong with lines of points, each with its line.
+
+    Cells are quoted only of a file that is called a table: whatever else was named by mistake may hold what
+    should not stand in a log.
+    """
     mistakes: list[Mistake] = []
+    file, quotes = str(path), path.suffix.lower() == ".csv"
     for number, line in enumerate(lines[start:], start + 1):
         if len(mistakes) == _MISTAKES_AT_MOST:
             return [*mistakes, Mistake("has more such lines; the first ones are named", file)]
-        if line.strip() and (wrong := _wrong(line)):
+        if line.strip() and (wrong := _wrong(line, quotes=quotes)):
             mistakes.append(Mistake(wrong, file, number))
     return mistakes or [Mistake("holds no points", file)]
 
 
-def _wrong(line: str) -> str:
+def _wrong(line: str, *, quotes: bool) -> str:
     """Return what is wrong with a line, or nothing."""
     cells = [cell.strip() for cell in line.split(",")]
     if len(cells) != 3:
-        return f"must hold three numbers with commas between, x,y,z, but is {line.strip()[:40]!r}"
+        return f"must hold three numbers with commas between, x,y,z, but holds {len(cells)} between commas"
     for name, cell in zip(_COLUMNS, cells, strict=True):
-        try:
-            value = float(cell)
-        except ValueError:
-            return f"{name} must be a number, but is {cell[:40]!r}"
-        if not (math.isfinite(value) and abs(value) <= LARGEST):
-            return f"{name} must be a finite number, at most {LARGEST:g} either way, but is {cell[:40]!r}"
+        what = f"is {cell[:_QUOTED_AT_MOST]!r}" if quotes else "is something else"
+        if cell.lower().lstrip("+-") in {"nan", "inf", "infinity"}:
+            return f"{name} must be a finite number, but {what}"
+        if not _NUMBER.fullmatch(cell):
+            return f"{name} must be a number such as -12.5 or 3e-2, but {what}"
+        if not abs(float(cell)) <= LARGEST:
+            return f"{name} must be a finite number, at most {LARGEST:g} either way, but {what}"
     return ""

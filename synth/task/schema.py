@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal, TypeVar
 from pydantic import (
     AfterValidator,
     BaseModel,
+    BeforeValidator,
     ConfigDict,
     Discriminator,
     Field,
@@ -19,6 +20,8 @@ from pydantic import (
     model_validator,
 )
 
+from synth.checks import told_apart, wrong_name
+from synth.robot.hardware import no_triangle
 from synth.task.model import Objective, Topology
 
 ONE, RANGE, TEXT, MAPPING = "<one>", "<range>", "<text>", "<mapping>"  # tags of unions, never keys
@@ -29,20 +32,26 @@ LARGEST = 1e6
 
 def _in_order(limits: list[float]) -> list[float]:
     if limits[0] > limits[1]:
-        raise ValueError(f"must run from low to high, but is [{limits[0]:g}, {limits[1]:g}]")
+        raise ValueError(f"must run from low to high, but is [{', '.join(told_apart(*limits))}]")
     return limits
 
 
 def _within_a_turn(limits: list[float]) -> list[float]:
     if limits[1] - limits[0] > 360:
-        raise ValueError(f"must be at most 360 degrees wide, but is {limits[1] - limits[0]:g}")
+        wide, _ = told_apart(limits[1] - limits[0], 360.0)
+        raise ValueError(f"must be at most 360 degrees wide, but is {wide}")
     return limits
 
 
 def _one_line(text: str) -> str:
-    if not (text.strip() and len(text) <= 100 and text.isprintable()):
-        raise ValueError("must be one line of 1 to 100 printable characters")
+    if wrong := wrong_name(text):
+        raise ValueError(wrong)
     return text
+
+
+def _without_case(word: Any) -> Any:
+    """Return a fixed word in small letters, as the format has it."""
+    return word.lower() if isinstance(word, str) else word
 
 
 def absent() -> Any:
@@ -53,7 +62,7 @@ def absent() -> Any:
 _T = TypeVar("_T")
 Pair = Annotated[list[_T], Field(min_length=2, max_length=2), AfterValidator(_in_order)]
 Name = Annotated[str, AfterValidator(_one_line)]
-LengthUnit = Literal["mm", "cm", "m"]
+LengthUnit = Annotated[Literal["mm", "cm", "m"], BeforeValidator(_without_case)]
 Coordinate = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
 Position = Annotated[list[Coordinate], Field(min_length=3, max_length=3)]
 Positive = Annotated[float, Field(ge=SMALLEST, le=LARGEST)]
@@ -122,18 +131,8 @@ class RobotEntry(Strict):
         """Ask for one choice at least with |d35 - d45| <= d34 <= d35 + d45."""
         if (d34 := info.data.get("d34")) is None:
             return rigid_link
-        (low35, high35), (low45, high45) = ends(rigid_link.d35), ends(rigid_link.d45)
-        slack = 1e-9 * d34  # a triangle that is flat but for rounding is one
-        if high35 + high45 < d34 - slack:
-            raise ValueError(
-                f"no triangle P3 P4 P5: d35 + d45 is at most {high35 + high45:g}, less than d34 = {d34:g}"
-            )
-        for longer, shorter, gap in (("d35", "d45", low35 - high45), ("d45", "d35", low45 - high35)):
-            if gap > d34 + slack:
-                raise ValueError(
-                    f"no triangle P3 P4 P5: {longer} exceeds {shorter} by at least {gap:g}, "
-                    f"more than d34 = {d34:g}"
-                )
+        if wrong := no_triangle(d34, ends(rigid_link.d35), ends(rigid_link.d45)):
+            raise ValueError(wrong)
         return rigid_link
 
 
@@ -263,10 +262,10 @@ class TaskFile(Strict):
     ] = Field(description="a preset's name, the path of a robot file, or a mapping")
     base: BaseEntry = Field(default_factory=BaseEntry, description="where the robot stands in the task frame")
     floor: Coordinate | None = Field(default=0.0, description="height in the base frame; null: no floor")
-    topology: Annotated[Topology, Field(strict=False)] = Field(
+    topology: Annotated[Topology, Field(strict=False), BeforeValidator(_without_case)] = Field(
         default=Topology.ANY, description="kind of shape"
     )
-    objective: Annotated[Objective, Field(strict=False)] = Field(
+    objective: Annotated[Objective, Field(strict=False), BeforeValidator(_without_case)] = Field(
         default=Objective.LEAST_SQUARES, description="norm of miss over tolerance"
     )
     targets: Annotated[list[TargetEntry], Field(min_length=1)] = Field(description="the points to reach")

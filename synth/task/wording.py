@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
 
+from synth.checks import described, did_you_mean, guesses
 from synth.task.document import KeyPath, Refused, key_text
 from synth.task.schema import MAPPING, ONE, RANGE, SURFACES_TO_COME, TEXT
 
@@ -79,16 +79,6 @@ def validate(document: Document, schema: type[_M]) -> _M | None:
     return None
 
 
-def did_you_mean(word: object, known: Iterable[str]) -> str:
-    """Return `; did you mean 'this'?` for a word close to a known one, and nothing otherwise."""
-    return "".join(f"; did you mean {close!r}?" for close in guesses(word, known))
-
-
-def guesses(word: object, known: Iterable[str]) -> list[str]:
-    """Return the known word closest to one that is not known, in a list of one or none."""
-    return difflib.get_close_matches(word.lower(), list(known), n=1) if isinstance(word, str) else []
-
-
 def _path(detail: ErrorDetails) -> KeyPath:
     """Return where it is without the tags of unions; an unknown key, though, is as the user wrote it."""
     place = detail["loc"]
@@ -129,20 +119,5 @@ def _sentence(detail: ErrorDetails, path: KeyPath, siblings: dict[str, Any]) -> 
     template = (_SENTENCES | _SENTENCES_AT.get(path, {})).get(kind)
     if template is None:
         return detail["msg"]
-    sentence = template.format(value=_described(value), **context)
+    sentence = template.format(value=described(value), **context)
     return sentence + did_you_mean(value, re.findall(r"'(\w+)'", context.get("expected", "")))
-
-
-def _described(value: object) -> str:
-    """Name a value in a sentence."""
-    if value is None:
-        return "empty (null)"
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, int | float):
-        return repr(value)
-    if isinstance(value, str):
-        return f"the text {value[:40]!r}"
-    if isinstance(value, dict | list):
-        return "a mapping" if isinstance(value, dict) else "a list"
-    return f"a {type(value).__name__}"

@@ -36,6 +36,7 @@ _VALUES: dict[str, bool | None] = {"null": None, "true": True, "false": False}
 _WORDS = {form: value for word, value in _VALUES.items() for form in (word, word.title(), word.upper())}
 _INTEGER = re.compile(r"[-+]?[0-9]{1,15}|0o[0-7]{1,15}|0x[0-9a-fA-F]{1,12}")  # longer ones are floats
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
+_PAIR = re.compile("[\ud800-\udbff][\udc00-\udfff]")
 _NOT_FINITE = re.compile(r"[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)")
 
 
@@ -130,6 +131,11 @@ def _scalar(text: str) -> str | float | bool | None:
     return text
 
 
+def _joined(text: str) -> str:
+    """Return a text with its surrogate pairs joined: so JSON escapes what is beyond 16 bits."""
+    return _PAIR.sub(lambda pair: pair[0].encode("utf-16-le", "surrogatepass").decode("utf-16-le"), text)
+
+
 class _Reader:
     """Turns the events of one document into plain values, keeping lines and mistakes."""
 
@@ -161,7 +167,7 @@ class _Reader:
             self._skip(event)
             return REFUSED
         if isinstance(event, ScalarEvent):
-            return _scalar(event.value) if event.implicit[0] else event.value
+            return _scalar(event.value) if event.implicit[0] else _joined(event.value)
         return self._mapping(path) if isinstance(event, MappingStartEvent) else self._list(path)
 
     def _list(self, path: KeyPath) -> list[object]:
@@ -194,7 +200,7 @@ class _Reader:
         self._skip(event)
         if not isinstance(event, ScalarEvent) or event.tag is not None:
             return REFUSED
-        return _scalar(event.value) if event.implicit[0] else event.value
+        return _scalar(event.value) if event.implicit[0] else _joined(event.value)
 
     def _skip(self, event: Event) -> None:
         """Pass over the rest of the value that begins with the event."""

@@ -1,0 +1,168 @@
+"""From what a file holds, in its unit, to the values of a task, in metres and radians."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.errors import InputError, Mistake
+from synth.geometry import Box, Capsule, Sphere
+from synth.robot import (
+    BasePose,
+    Interval,
+    JointLimits,
+    LinkShape,
+    MalleableLink,
+    RigidLink,
+    Robot,
+    link_to_pose,
+    turned,
+)
+from synth.task.hardware_distances import off_the_hardware
+from synth.task.model import DEFAULT_TOLERANCE, Obstacle, PointTarget, TargetTable, Task
+from synth.task.schema import BoxEntry, CapsuleEntry, SphereEntry, ends
+from synth.task.sizes import PER_METRE
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from synth.arrays import FloatArray
+    from synth.geometry import Solid
+    from synth.task.schema import CurrentEntry, ObstacleEntry, RobotEntry, TargetEntry, TaskFile
+
+
+def to_task(file: TaskFile, robot: Robot, scan: FloatArray | None, name: str) -> Task:
+    """Return the task of a file; `name` if it states none.
+
+    Args:
+        file: What the file holds.
+        robot: The robot that it names or describes.
+        scan: The points of its surface in the unit of the file, shape (n, 3); None if it has none.
+        name: What the task is called if it states no name.
+
+    Raises:
+        InputError: The values do not fit together; keys are those of the file.
+    """
+    per_metre = PER_METRE[file.length_unit]
+    base = BasePose(np.array(file.base.position) / per_metre, math.radians(file.base.yaw_deg))
+    current = None if file.current is None else _to_shape(file.current, per_metre, robot, base)
+    return Task(
+        name=file.name or name,
+        robot=robot,
+        targets=_targets(file, scan, per_metre),
+        base=base,
+        floor=None if file.floor is None else file.floor / per_metre,
+        topology=file.topology,
+        objective=file.objective,
+        obstacles=tuple(
+            _to_obstacle(entry, per_metre, default_name("obstacle", index))
+            for index, entry in enumerate(file.obstacles)
+        ),
+        current=current,
+    )
+
+
+def _targets(file: TaskFile, scan: FloatArray | None, per_metre: float) -> Sequence[PointTarget]:
+    """Return the targets, and behind them the points of a surface."""
+    targets = tuple(
+        _to_target(entry, per_metre, default_name("target", index))
+        for index, entry in enumerate(file.targets or ())
+    )
+    if scan is None:
+        return targets
+    given, count = file.surface.tolerance, len(scan)
+    tolerance = DEFAULT_TOLERANCE if given is None else given / per_metre
+    names = tuple(f"surface point {number}" for number in range(1, count + 1))
+    points = TargetTable(names, scan / per_metre, np.full(count, tolerance), np.ones(count))
+    return TargetTable.of(targets).followed_by(points)
+
+
+def default_name(kind: str, index: int) -> str:
+    """Return what the entry at an index is called if it states no name."""
+    return f"{kind} {index + 1}"
+
+
+def _to_target(entry: TargetEntry, per_metre: float, name: str) -> PointTarget:
+    return PointTarget(
+        name=entry.name or name,
+        position=np.array(entry.position) / per_metre,
+        tolerance=DEFAULT_TOLERANCE if entry.tolerance is None else entry.tolerance / per_metre,
+        weight=entry.weight,
+    )
+
+
+def _to_obstacle(entry: ObstacleEntry, per_metre: float, name: str) -> Obstacle:
+    solid: Solid
+    match entry.solid:
+        case SphereEntry(center=center, radius=radius):
+            solid = Sphere(np.array(center) / per_metre, radius / per_metre)
+        case BoxEntry(center=center, size=size, yaw_deg=yaw):
+            solid = Box(np.array(center) / per_metre, np.array(size) / per_metre, math.radians(yaw))
+        case CapsuleEntry(from_=start, to=end, radius=radius):
+            solid = Capsule(np.array([start, end]) / per_metre, radius / per_metre)
+    return Obstacle(entry.name or name, solid)
+
+
+def _to_shape(entry: CurrentEntry, per_metre: float, robot: Robot, base: BasePose) -> LinkShape:
+    """Return the present shape of the link.
+
+    Of markers the direction counts, and where the link's end is by it; how far they are apart only says
+    whether they are those of this robot.
+
+    Raises:
+        InputError: The markers are not those of this robot, or no shape of its link is found that has them.
+    """
+    if entry.arcs:
+        curvatures = np.array([arc.curvature for arc in entry.arcs]) * per_metre
+        return LinkShape(curvatures, np.array([arc.length for arc in entry.arcs]) / per_metre)
+    markers = np.array([entry.markers.P3, entry.markers.P4]) / per_metre
+    p3, p4 = turned(base.to_base(markers), np.asarray(-math.radians(entry.markers.joint1_deg)))
+    apart = float(np.linalg.norm(p4 - p3))
+    for wrong in off_the_hardware({"d34": apart}, robot).values():
+        raise InputError([Mistake(wrong, key="current.markers")])
+    along = (p4 - p3) / max(apart, 1e-12)
+    end = p3 + robot.tip_offset * along - np.array([0.0, 0.0, robot.d12])
+    shape = link_to_pose(robot.link, end, along, theta1=Interval.fixed(0.0))
+    if shape is None:
+        sentence = "no shape of this robot's link was found that puts P3 and P4 there"
+        raise InputError([Mistake(sentence, key="current.markers")])
+    return shape
+
+
+def to_robot(entry: RobotEntry, per_metre: float, name: str) -> Robot:
+    """Return the robot that an entry describes; `name` if it states none."""
+    link, limits, full = entry.link, entry.joint_limits_deg, JointLimits()
+    tip_offset = 0.5 * entry.d34 if entry.tip_offset is None else entry.tip_offset
+    bend = link.max_total_bend_deg
+    return Robot(
+        name=entry.name or name,
+        d12=entry.d12 / per_metre,
+        link=MalleableLink(
+            length=_interval(link.length, per_metre),
+            min_bend_radius=link.min_bend_radius / per_metre,
+            diameter=(link.diameter or 0.0) / per_metre,
+            max_total_bend=math.inf if bend is None else math.radians(bend),
+        ),
+        d34=entry.d34 / per_metre,
+        tip_offset=tip_offset / per_metre,
+        rigid_link=RigidLink(
+            _interval(entry.rigid_link.d35, per_metre),
+            _interval(entry.rigid_link.d45, per_metre),
+            (entry.rigid_link.diameter or 0.0) / per_metre,
+        ),
+        joint_limits=JointLimits(
+            base=full.base if limits.base is None else _radians(limits.base),
+            second=full.second if limits.second is None else _radians(limits.second),
+        ),
+    )
+
+
+def _interval(value: float | list[float], per_metre: float) -> Interval:
+    low, high = ends(value)
+    return Interval(low / per_metre, high / per_metre)
+
+
+def _radians(limits: list[float]) -> Interval:
+    return Interval(math.radians(limits[0]), math.radians(limits[1]))

@@ -1,0 +1,107 @@
+"""Sizes that cannot be meant: the traces that a mistaken unit of length leaves.
+
+A unit mistaken makes a length 10, 100 or 1000 times too large or too small. Ten times is within what people
+ask in earnest: a target out of reach is an honest impossible task, and so is one near the base. Hundred and
+thousand times are not, and a search for such a task takes long and ends in a reason that does not help. So
+what is asked about is what no task means:
+
+- all targets within a hundredth of the robot's reach about P1: that is inside the base's own column (12 mm
+  for the prototype, whose link is 50 mm thick);
+- all targets farther from P1 than 20 times the reach;
+- a link shorter than a 20th of the longer of d12 and d34, or longer than 1000 times that one (the
+  prototype's is 12 times as long).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.errors import Mistake
+
+if TYPE_CHECKING:
+    from synth.robot import Robot
+    from synth.task.model import Task
+
+PER_METRE = {"mm": 1000.0, "cm": 100.0, "m": 1.0}  # to divide by: 455 / 1000 is 0.455 exactly
+_NEAR, _FAR = 0.01, 20.0  # of the reach
+_SHORT, _LONG = 0.05, 1000.0  # of the longer of d12 and d34
+_MEANT = (0.1, 1.5)  # of the reach: where the farthest target is in a unit that may be meant
+
+
+def unmeant_sizes(task: Task, unit: str | None = None) -> list[Mistake]:
+    """Return what is wrong with the sizes of a task, its robot's among them.
+
+    Args:
+        task: The task.
+        unit: What its file states as the unit of length; None for a task in metres from Python.
+    """
+    return [
+        *(_with_key(wrong, f"robot.{wrong.key}") for wrong in unmeant_sizes_of_robot(task.robot)),
+        *unmeant_distances(task, unit),
+    ]
+
+
+def unmeant_sizes_of_robot(robot: Robot) -> list[Mistake]:
+    """Return what is wrong with the sizes of a robot."""
+    baseline = max(robot.d12, robot.d34)
+    longest = robot.link.length.upper
+    if _SHORT * baseline <= longest <= _LONG * baseline:
+        return []
+    name, wrong = ("d12" if robot.d12 == baseline else "d34"), "short" if longest < baseline else "long"
+    return [
+        Mistake(
+            f"a link of {_millimetres(longest)} is too {wrong} beside {name} = {_millimetres(baseline)}: "
+            "are all lengths of the robot in one unit, and is that unit right?",
+            key="link.length",
+        )
+    ]
+
+
+def unmeant_distances(task: Task, unit: str | None = None) -> list[Mistake]:
+    """Return what is wrong with the distances of all targets from P1, beside what the robot reaches."""
+    reach = reach_of(task.robot)
+    distances = np.linalg.norm(task.positions, axis=1)
+    nearest, farthest = float(distances.min()), float(distances.max())
+    if _NEAR * reach <= farthest and nearest <= _FAR * reach:
+        return []
+    if farthest < _NEAR * reach:
+        where = f"all targets are within {_millimetres(_up(farthest))} of P1"
+    else:
+        where = f"all targets are at least {_millimetres(nearest)} from P1"
+    sentence = f"{where}, and this robot reaches {_millimetres(reach)}"
+    number, stated = farthest * PER_METRE[unit or "m"], unit or "m"
+    question = f"is length_unit: {stated} right?" if unit else "are they in metres?"
+    for other, per_metre in PER_METRE.items():
+        if other != stated and _MEANT[0] * reach <= number / per_metre <= _MEANT[1] * reach:
+            question += f" In {other} the farthest would be {_millimetres(number / per_metre)} away"
+            break
+    return [Mistake(f"{sentence}: {question}", key="targets")]
+
+
+def reach_of(robot: Robot) -> float:
+    """Return a distance from P1 that P5 never exceeds, m: column, link and rigid link in line."""
+    rods = [
+        math.hypot(*map(float, robot.end_effector_circle(d35, d45)))
+        for d35 in (robot.rigid_link.d35.lower, robot.rigid_link.d35.upper)
+        for d45 in (robot.rigid_link.d45.lower, robot.rigid_link.d45.upper)
+    ]
+    return robot.d12 + robot.link.length.upper + max(rods)
+
+
+def _up(length: float) -> float:
+    """Round up to three digits, so that `within` stays true."""
+    if length == 0.0:
+        return 0.0
+    step = 10.0 ** (math.floor(math.log10(length)) - 2)
+    return math.ceil(length / step) * step
+
+
+def _millimetres(length: float) -> str:
+    return f"{1e3 * length:.4g} mm" if length < 100.0 else f"{length:.4g} m"
+
+
+def _with_key(mistake: Mistake, key: str) -> Mistake:
+    return Mistake(mistake.message, mistake.file, mistake.line, key)
