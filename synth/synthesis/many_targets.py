@@ -137,11 +137,11 @@ def _with_joint_1_clear(task: Task, arm: Arm, watch: Watch) -> Arm | None:
     gaps = np.diff(angles, append=angles[0] + 2.0 * math.pi)
     widest = int(np.argmax(gaps))
     # Joint 1 is to stand at theta1 + turn: the gap then spans from its upper limit to the lower one.
-    turn = Interval(
-        limits.base.lower + 2.0 * math.pi - angles[widest] - gaps[widest], limits.base.upper - angles[widest]
-    )
-    if turn.lower > turn.upper:
+    least = limits.base.lower + 2.0 * math.pi - angles[widest] - gaps[widest]
+    most = limits.base.upper - angles[widest]
+    if least > most:
         return None
+    turn = Interval(float(least), float(most))
     rotation, end = free.shape.end_frame()
     shape = link_to_pose(task.robot.link, end, rotation[:, 0], theta1=turn)
     if shape is None:
