@@ -123,8 +123,11 @@ class Search:
         return start.cost <= float(self.part.tolerances.min()) ** 2
 
     def _may_be_better(self, start: Start) -> bool:
-        """Whether a start may lead to a better shape than the best: not if its valley is above that."""
-        if not self.polishing.designs or self.polishing.found:
+        """Whether a start may lead to a better shape than the best: not if its valley is above that.
+
+        For targets far out of reach the refinement, which takes misses for small, does not say how low it is.
+        """
+        if not self.polishing.designs or self.polishing.found or self._impossible:
             return True
         least = start.cost / float(self.part.tolerances.min()) ** 2  # in the mean, so also of the worst
         if self.part.objective is Objective.LEAST_SQUARES:
