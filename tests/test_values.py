@@ -44,8 +44,9 @@ WRONG = [
     (lambda: PointTarget(7, "abc", True, "x"), ["name", "position", "tolerance", "weight"]),
     (
         lambda: TargetTable(["a", "a"], np.zeros((2, 3)), [1, -1], [NAN, 1]),
-        ["targets[1].name", "targets[1].tolerance", "targets[0].weight"],
+        ["targets[1].tolerance", "targets[0].weight"],
     ),
+    (lambda: Task("x", ROBOT, TargetTable(["a", "a"], np.eye(3)[:2], [1, 1], [1, 1])), ["targets[1].name"]),
     (lambda: TargetTable(5, [], [], []), ["names"]),
     (lambda: TargetTable([[1], "b"], np.zeros((2, 3)), [1, 1], [1, 1]), ["targets[0].name"]),
     (lambda: Task("x", ROBOT, []), ["targets"]),

@@ -101,6 +101,11 @@ class TargetTable(Sequence[PointTarget]):
         checks.array("weights", (count,), least=SMALLEST, rows="targets[{}].weight")
         checks.refuse()
 
+    @cached_property
+    def names_given_twice(self) -> list[tuple[int, int]]:
+        """Where names stand that stood before, and where they stood first: looked for once in a table."""
+        return given_twice(self.names)
+
     @classmethod
     def of(cls, targets: Sequence[PointTarget]) -> TargetTable:
         """Return targets in columns."""
@@ -203,8 +208,11 @@ class Task:
             checks, "targets", self.targets, PointTarget
         ):
             checks.put("targets", TargetTable.of(self.targets))
-        if isinstance(self.targets, TargetTable) and not len(self.targets):
-            checks.report("targets", "must hold one target at least, but is empty")
+        if isinstance(self.targets, TargetTable):
+            if not len(self.targets):
+                checks.report("targets", "must hold one target at least, but is empty")
+            table = self.targets
+            _report_names_given_twice(checks, "targets", table.names, table.names_given_twice)
         checks.is_a("base", BasePose)
         if self.floor is not None:
             checks.number("floor")
@@ -212,6 +220,8 @@ class Task:
         checks.word("objective", Objective)
         if _are_all(checks, "obstacles", self.obstacles, Obstacle):
             checks.put("obstacles", tuple(self.obstacles))
+            names = [obstacle.name for obstacle in self.obstacles]
+            _report_names_given_twice(checks, "obstacles", names, given_twice(names))
         if self.current is not None:
             checks.is_a("current", LinkShape)
         checks.refuse()
@@ -252,8 +262,6 @@ def _check_names(checks: Checks, given: Any) -> None:
         for index, name in enumerate(given):
             if wrong := wrong_name(name):
                 checks.report(f"targets[{index}].name", wrong)
-    else:
-        _report_names_given_twice(checks, "targets", given)
     checks.put("names", _CheckedNames(given))
 
 
@@ -268,20 +276,20 @@ def _wrong_names(names: Sequence[str]) -> bool:
     return not (is_one_line and all(names) and not any(map(str.isspace, names)))
 
 
-def _report_names_given_twice(checks: Checks, key: str, names: Sequence[str]) -> bool:
-    """Report names that stand in a list twice; whether there are any."""
-    twice = given_twice(names)
+def _report_names_given_twice(
+    checks: Checks, key: str, names: Sequence[str], twice: Sequence[tuple[int, int]]
+) -> None:
+    """Report names that stand in a list twice, by the places that `given_twice` returned."""
     for index, first in twice:
         checks.report(f"{key}[{index}].name", f"{names[index]!r} is the name of {key}[{first}] already")
-    return bool(twice)
 
 
 def _are_all(checks: Checks, key: str, given: Any, kind: type) -> bool:
-    """Whether a field is a sequence of values of one kind, each with its own name."""
+    """Whether a field is a sequence of values of one kind."""
     if not isinstance(given, Sequence) or isinstance(given, str):
         checks.report(key, f"must be a list of {kind.__name__}, but is {described(given)}")
         return False
     wrong_ones = [(index, wrong) for index, one in enumerate(given) if (wrong := wrong_type(one, kind))]
     for index, wrong in wrong_ones[:10]:
         checks.report(f"{key}[{index}]", wrong)
-    return not (wrong_ones or _report_names_given_twice(checks, key, [one.name for one in given]))
+    return not wrong_ones
