@@ -17,6 +17,7 @@ import numpy as np
 from synth.arrays import FloatArray, frozen
 from synth.robot import CLEAR, ArmBody, turned
 from synth.synthesis.solution import joints_reaching
+from synth.synthesis.verification import seen_by
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -122,7 +123,7 @@ class _Room:
     def __init__(self, task: Task, design: Design) -> None:
         self._body = ArmBody(design.arm)
         self._limits = task.robot.joint_limits
-        self._solids: list[Solid] = list(task.solids)
+        self._solids: list[Solid] = list(seen_by(task, design.arm))
         # For the rod only: joint 1 keeps all heights, so the tube stays where it is over the floor.
         self._floor = -np.inf if task.floor is None else task.floor
 
