@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import time
 from dataclasses import dataclass, replace
@@ -16,11 +17,12 @@ from synth.synthesis.impossibility import why_impossible
 from synth.synthesis.many_targets import improved, levelled, ranked
 from synth.synthesis.polishing import Polishing
 from synth.synthesis.population import in_equal_arcs
-from synth.synthesis.ranking import best_of, rank
+from synth.synthesis.ranking import best_of, objective
 from synth.synthesis.screening import Start, starts
 from synth.synthesis.solution import Design, Solution, Status
 from synth.synthesis.verdict import message, why_no_better
 from synth.synthesis.verification import verify
+from synth.synthesis.wished import wished
 from synth.task import Objective
 
 if TYPE_CHECKING:
@@ -33,7 +35,7 @@ if TYPE_CHECKING:
 _STARTS_AT_MOST = 48
 _STARTS_WHEN_IMPOSSIBLE = 12  # for a good best effort
 _FOLLOWED = 2  # shapes of a neighbour that are polished
-ALTERNATIVES = 4  # starts polished after a shape was found: for distinct, gentler and nearer ones
+ALTERNATIVES = 3  # starts polished after a shape was found: for distinct, gentler and nearer ones
 _ALTERNATIVES_THAT_MISS = 2  # likewise, at most, where no shape meets all targets
 _GAIN = 1e-3  # of the objective: the least that is worth another start
 _PROOF_TIME = 60.0  # s
@@ -113,8 +115,23 @@ class Search:
             self.starts += 1
             self.starts_found += self.polishing.found
             self._report()
+            if self.starts_found == 1 and self.alternatives and self._wished_for():
+                return
             if self.starts >= self.starts_at_most or self.starts_found > self.alternatives:
                 return
+
+    def _wished_for(self) -> bool:
+        """Look for shapes that a person would rather have than the first one; whether there are any."""
+        found = 0
+        with self.clock.on("solving"):
+            candidates = list(
+                itertools.islice(wished(self.part, self.seed, self._out_of_time), 2 * self.alternatives)
+            )
+        for arm, joints in candidates:
+            if found >= self.alternatives or self._out_of_time():
+                break
+            found += self.polishing.keep(arm, joints, stay=True).verification.found
+        return found > 0
 
     def _may_be_better(self, start: Start) -> bool:
         """Whether a start may lead to a better shape than the best: not if its valley is above that."""
@@ -123,7 +140,7 @@ class Search:
         least = start.cost / float(self.part.tolerances.min()) ** 2  # in the mean, so also of the worst
         if self.part.objective is Objective.LEAST_SQUARES:
             least *= len(self.part.targets)
-        best = min(rank(self.part, design)[1] for design in self.polishing.designs)
+        best = min(objective(self.part, design) for design in self.polishing.designs)
         return least < (1.0 - _GAIN) * best
 
     def _led_astray(self, start: Start) -> bool:
