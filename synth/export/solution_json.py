@@ -48,6 +48,7 @@ def solution_to_json(solution: Solution) -> dict[str, Any]:
         "time": solution.time,
         **shape,
         "targets": _targets(task, designs[0]) if designs else _targets_missed(task),
+        "figures": designs[0].figures if designs else None,
         "motions": list(motions(task, designs[0])) if _has_motions(solution) else None,
         "bound": _bound(solution.bound),
         "releases": [
@@ -107,6 +108,7 @@ def _alternative(task: Task, design: Design) -> dict[str, object]:
         "distances": {pair: math.sqrt(s) for pair, s in squared.items()},
         "category": design.arm.category.value,
         "link": _link(design.arm),
+        "figures": design.figures,
         "targets": [
             {"name": target.name, "miss": miss, "within_tolerance": within}
             for target, miss, within in zip(

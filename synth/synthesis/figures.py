@@ -67,7 +67,7 @@ def judged(task: Task, design: Design) -> Design:
         ways_missing=sum(not way.found for way in ways),
         margins=margins,
         shortfall=margins.shortfall(Margins.wanted(task.robot)),
-        forgiveness=hand_forgiveness(task, arm),
+        forgiveness=hand_forgiveness(task, arm, check.joints),
         largest_swing=max(swings, default=0.0),
         travel=sum(way.travel for way in ways),
         bend=arm.shape.bending_energy,

@@ -96,18 +96,20 @@ def _hand() -> HandErrors:
     return HandErrors.of((0.5 + np.arange(1.0, _ERRORS + 1.0)[:, None] * steps) % 1.0)
 
 
-def hand_forgiveness(task: Task, arm: Arm) -> Forgiveness:
+def hand_forgiveness(task: Task, arm: Arm, joints: FloatArray | None = None) -> Forgiveness:
     """Return what becomes of a task after a hand placed the link.
 
     Args:
         task: The task.
         arm: The robot in the shape that the hand aims at.
+        joints: Its joint angles at the targets, shape (n, 2), rad; by default the closest ones.
     """
     frame, end = arm.end_frame
     circle = arm.circle
     kinematics = Kinematics(frame[None], circle.centre[None], np.array([circle.radius]))
     positions = arm.base.to_base(task.table.positions)
-    joints, _ = arm.closest_joints(task.table.positions)
+    if joints is None:
+        joints, _ = arm.closest_joints(task.table.positions)
     some = _some(len(positions))
     aims = Aims(positions[some], task.robot.joint_limits)
     worst, within = misses_after_a_hand(
@@ -163,4 +165,4 @@ def _rotations(axes: FloatArray, angles: FloatArray) -> FloatArray:
     zero = np.zeros_like(x)
     cross = np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]]).transpose(2, 0, 1)
     sin, versine = np.sin(angles)[:, None, None], (1.0 - np.cos(angles))[:, None, None]
-    return np.eye(3) + sin * cross + versine * (cross @ cross)
+    return np.asarray(np.eye(3) + sin * cross + versine * (cross @ cross))

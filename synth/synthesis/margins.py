@@ -81,7 +81,7 @@ class Margins:
 
 
 def joint_shortfalls(robot: Robot, joints: FloatArray) -> FloatArray:
-    """Return what postures miss of the margins of the joints, shape (...), for angles, shape (..., 2), rad."""
+    """Return what postures, shape (..., 2), rad, miss of the margins of the joints, shape (...)."""
     missing = np.zeros(joints.shape[:-1])
     limits = robot.joint_limits
     for interval, angles in ((limits.base, joints[..., 0]), (limits.second, joints[..., 1])):
@@ -104,9 +104,7 @@ def drawn_in(task: Task, *, joints: bool = True, link: bool = True) -> Task:
     robot, margins = task.robot, Margins.wanted(task.robot)
     if joints:
         limits = robot.joint_limits
-        narrow = JointLimits(
-            _shrunk(limits.base, margins.joint1), _shrunk(limits.second, margins.joint2)
-        )
+        narrow = JointLimits(_shrunk(limits.base, margins.joint1), _shrunk(limits.second, margins.joint2))
         robot = replace(robot, joint_limits=narrow)
     if link:
         gentle = replace(

@@ -107,6 +107,7 @@ def routed(task: Task, design: Design) -> tuple[tuple[Motion, ...], FloatArray]:
     ways = _Room(task, design).ways(postures)
     cramped = [_CRAMPED * joint_shortfalls(task.robot, joints) for joints in postures]
     # To each posture of a target the least cost so far, rad, and which postures are taken on the way there.
+    best: list[tuple[float, tuple[int, ...]]]
     best = [(float(cost), (index,)) for index, cost in enumerate(cramped[0])]
     for step, costs in enumerate(cramped[1:]):
         best = [
@@ -161,7 +162,7 @@ class _Room:
         ways = []
         for pairs in steps:
             some = {pair: next(straight) for pair in pairs}
-            ways.append({pair: np.stack([a, b]) if clear else np.empty((0, 2)) for pair, (clear, a, b) in some.items()})
+            ways.append({pair: np.stack([a, b])[: 2 if clear else 0] for pair, (clear, a, b) in some.items()})
             if not any(len(way) for way in ways[-1].values()):
                 self._go_around(ways[-1], some)
         return ways
@@ -189,7 +190,7 @@ class _Room:
         return clear
 
     def _clear_of_itself(self, start: FloatArray, end: FloatArray) -> NDArray[np.bool_]:
-        """Return whether the rod keeps clear of tube and floor as theta2 goes from start to end, shape (n,)."""
+        """Return whether the rod is clear of tube and floor as theta2 goes from start to end, shape (n,)."""
         # Mostly all is clear between the least and the largest angle: one question in place of n.
         whole = np.array([min(start.min(), end.min())]), np.array([max(start.max(), end.max())])
         for ways in (whole, (start, end)):
@@ -244,8 +245,8 @@ class _Room:
     def _sampled_clearance(self, theta1: FloatArray, theta2: FloatArray) -> FloatArray:
         """Return about how far tube and rod keep from everything, by samples, m.
 
-        The tube moves with joint 1 alone, and what the rod keeps from tube and floor depends on joint 2 alone:
-        on a grid of angles, shapes (k, 1) and (1, l), these are asked for few angles.
+        The tube moves with joint 1 alone, and what the rod keeps from tube and floor depends on joint 2
+        alone: on a grid of angles, shapes (k, 1) and (1, l), these are asked for few angles.
 
         Args:
             theta1: Angles of joint 1, rad.
@@ -262,7 +263,9 @@ class _Room:
         tube, rod = turned(tube, theta1[..., None]), turned(rod, theta1[..., None])
         for solid in self._solids:
             from_tube = solid.distance(tube).min(axis=-1) - body.tube_radius
-            least = np.minimum(least, np.minimum(from_tube, solid.distance(rod).min(axis=-1) - body.rod_radius))
+            least = np.minimum(
+                least, np.minimum(from_tube, solid.distance(rod).min(axis=-1) - body.rod_radius)
+            )
         return np.asarray(least)
 
 

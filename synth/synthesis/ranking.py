@@ -1,6 +1,6 @@
 """Which of the shapes found is the best, and which others are worth telling.
 
-Among shapes that reach every target the order is that of `preference`, and it stands nowhere else.
+Among shapes that reach every target the order is that of `preferences`, and it stands nowhere else.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ from synth.task import Objective
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
+    from synth.arrays import FloatArray
     from synth.synthesis.figures import Figures
     from synth.synthesis.solution import Design
     from synth.task import Task
@@ -28,48 +29,61 @@ _COMPARABLE = 1.5
 # Two shapes nearer than this all along, m, are one: a hand places the link to 9.6 +- 2.1 mm (Ranne,
 # Clark and Rojas, 2022).
 _SAME_SHAPE = 0.010
-# Figures are compared in steps, so that neither noise nor a trifle of one decides over the next: of a margin;
-# of a swing, rad, above what is calm; of the expected worst miss, m; of travel, rad.
-_MARGIN_STEP, _SWING_STEP, _MISS_STEP, _TRAVEL_STEP = 0.1, math.radians(15.0), 0.5e-3, math.radians(10.0)
-_LESS_MARGIN = 5  # steps of margin that an alternative may have less
-_CALM = math.radians(120.0)
+# A joint that swings by less than this between two targets is calm, rad; with the step, 120 deg are as good.
+_CALM = math.radians(105.0)
+# What less than so much apart, of `preferences`, is as good: neither noise nor a trifle of one decides over
+# the next. Ways; margins; swings, rad; m; rad; 1/m.
+STEPS = np.array([1.0, 0.1, math.radians(15.0), 0.5e-3, math.radians(10.0), 1e-9])
+_LESS_MARGIN = 0.5  # that an alternative may have, as a share of all of one kind
+_ROUNDING = 1e-9
 
 
-def preference(
+def preferences(
     ways_missing: ArrayLike,
     shortfall: ArrayLike,
     largest_swing: ArrayLike,
     expected_worst_miss: ArrayLike,
     travel: ArrayLike,
     bend: ArrayLike,
-) -> tuple[ArrayLike, ...]:
-    """Return what is smaller for a shape that a person would rather have, the first that differs decides.
+) -> FloatArray:
+    """Return what should be small in a shape, what matters most first, shape (..., 6).
 
     1. Ways lead from every target to the next.
     2. It keeps off the limits: of joints, length, bend, and of obstacles.
-    3. No joint swings by much more than 120 deg between two targets.
+    3. No joint swings by more than about 120 deg between two targets.
     4. It forgives the hand that bends it.
     5. The joints travel little.
     6. The link is bent gently.
 
     Args: as the fields of `Figures`; numbers, or arrays of many shapes.
     """
-    return (
-        ways_missing,
-        np.round(np.divide(shortfall, _MARGIN_STEP)),
-        np.ceil(np.maximum(np.subtract(largest_swing, _CALM), 0.0) / _SWING_STEP),
-        np.round(np.divide(expected_worst_miss, _MISS_STEP)),
-        np.round(np.divide(travel, _TRAVEL_STEP)),
-        bend,
-    )
+    restless = np.maximum(np.subtract(largest_swing, _CALM), 0.0)
+    columns = (ways_missing, shortfall, restless, expected_worst_miss, travel, bend)
+    return np.stack([np.asarray(column, dtype=np.float64) for column in columns], axis=-1)
 
 
-def rank(figures: Figures) -> tuple[float, ...]:
-    """Return what is smaller for a better one of the shapes that reach every target.
+def preferred(table: FloatArray, steps: FloatArray = STEPS) -> NDArray[np.intp]:
+    """Return the order of shapes, the most wanted first, for rows of `preferences`, shape (N, 6).
 
-    If the task names the present shape, that is the one which changes it least, once it has all ways.
+    Column by column: of shapes that are alike so far, those within a step of the least are alike again, those
+    within two come next.
+
+    Args:
+        table: The rows.
+        steps: What less than so much apart is alike, one for each column.
     """
-    ways_missing, *others = preference(
+    alike = np.zeros(len(table), dtype=np.intp)
+    for column, step in zip(table.T, steps, strict=True):
+        least = np.full(len(table), np.inf)
+        np.minimum.at(least, alike, column)
+        behind = np.floor((column - least[alike]) / step + _ROUNDING)
+        _, alike = np.unique(np.column_stack([alike, behind]), axis=0, return_inverse=True)
+        alike = alike.ravel()
+    return np.argsort(alike, kind="stable")
+
+
+def _row(figures: Figures) -> FloatArray:
+    return preferences(
         figures.ways_missing,
         figures.shortfall,
         figures.largest_swing,
@@ -77,7 +91,20 @@ def rank(figures: Figures) -> tuple[float, ...]:
         figures.travel,
         figures.bend,
     )
-    return tuple(float(x) for x in (ways_missing, figures.change or 0.0, *others))
+
+
+def _order_of(table: FloatArray, changes: Sequence[float | None]) -> NDArray[np.intp]:
+    """Return the order of shapes that reach every target.
+
+    If the task names the present shape, the one that changes it least comes first, once it has all ways.
+
+    Args:
+        table: Rows of `preferences`.
+        changes: How much each shape changes the present one, m, if the task names it.
+    """
+    if None in changes:
+        return preferred(table)
+    return np.lexsort([np.array(changes), table[:, 0]])
 
 
 def objective(task: Task, design: Design) -> float:
@@ -87,23 +114,26 @@ def objective(task: Task, design: Design) -> float:
 
 
 def best_of(task: Task, designs: Sequence[Design]) -> tuple[Design, ...]:
-    """Return the best designs in order, judged, each different from those before by more than a hand can tell.
+    """Return the best designs in order, judged; each differs from those before by more than a hand can tell.
 
-    Those that reach every target are in the order of `rank`, and no others stand beside them; best efforts
-    in the order of the task's objective, with those that miss nearly as little.
+    Those that reach every target are in the order of `preferences`, and no others stand beside them; best
+    efforts are in the order of the task's objective, with those that miss nearly as little.
     """
     found = [judged(task, design) for design in designs if design.verification.found]
     if found:
-        ranks = sorted((rank(design.figures), index) for index, design in enumerate(found))
-        return _distinct([found[index] for each, index in ranks if _stands_beside(each, ranks[0][0])])
+        figures = [design.figures for design in found if design.figures is not None]
+        table = np.array([_row(each) for each in figures])
+        order = _order_of(table, [each.change for each in figures])
+        beside = _stand_beside(table, table[order[0]])
+        return _distinct([found[index] for index in order if beside[index]])
     misses = sorted((objective(task, design), index) for index, design in enumerate(designs))
     near = [designs[index] for value, index in misses if value <= _COMPARABLE * misses[0][0]]
     return tuple(judged(task, design) for design in _distinct(near))
 
 
-def _stands_beside(other: tuple[float, ...], best: tuple[float, ...]) -> bool:
-    """Return whether a shape is an alternative to the best one: with all its ways, and nearly its margins."""
-    return other[0] <= best[0] and other[2] <= best[2] + _LESS_MARGIN
+def _stand_beside(table: FloatArray, best: FloatArray) -> NDArray[np.bool_]:
+    """Return which shapes are alternatives to the best one: with all its ways, and nearly its margins."""
+    return np.asarray((table[:, 0] <= best[0]) & (table[:, 1] <= best[1] + _LESS_MARGIN))
 
 
 def _distinct(designs: Sequence[Design]) -> tuple[Design, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 import time
 from dataclasses import dataclass, replace
@@ -122,15 +121,16 @@ class Search:
 
     def _wished_for(self) -> bool:
         """Look for shapes that a person would rather have than the first one; whether there are any."""
-        found = 0
-        with self.clock.on("solving"):
-            candidates = list(
-                itertools.islice(wished(self.part, self.seed, self._out_of_time), 2 * self.alternatives)
-            )
-        for arm, joints in candidates:
-            if found >= self.alternatives or self._out_of_time():
+        known = [design.arm for design in self.polishing.designs if design.verification.found]
+        found, candidates = 0, wished(self.part, known, self.seed, self._out_of_time)
+        for _ in range(2 * self.alternatives):
+            with self.clock.on("solving"):
+                candidate = next(candidates, None)
+            if candidate is None or self._out_of_time():
                 break
-            found += self.polishing.keep(arm, joints, stay=True).verification.found
+            found += self.polishing.keep(*candidate, stay=True).verification.found
+            if found == self.alternatives:
+                break
         return found > 0
 
     def _may_be_better(self, start: Start) -> bool:

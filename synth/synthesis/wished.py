@@ -20,14 +20,14 @@ from synth.synthesis.margins import Margins, drawn_in
 from synth.synthesis.motion import MOST_MOTIONS
 from synth.synthesis.population import ARCS, ARM_LENGTH, Population, into_limits
 from synth.synthesis.postures import Aims, Postures
-from synth.synthesis.ranking import preference
+from synth.synthesis.ranking import preferences, preferred
 from synth.synthesis.refinement import refine, relative_weights
 from synth.synthesis.screening import estimated_misses
 from synth.synthesis.separation import overlaps
 from synth.task import Objective
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -36,21 +36,22 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 # Random shapes; so many of them, half the best, half at random from the good ones, are led to the targets.
-_SHAPES, _LED, _GOOD = 10_000, 120, 2_000
+_SHAPES, _LED, _GOOD = 10_000, 80, 2_000
 _PER_DESIGN = 6  # shapes looked at near each exact design, where there are any
 _FAR = 0.3  # m; misses are compared up to here
 _ITERATIONS, _ITERATIONS_AGAIN = 12, 6
-# Rounds of bending; shapes that are bent, and how often each; sizes of the bends in units of the largest
-# curvature; lengths change by a twentieth of that, m.
-_ROUNDS, _BENT, _TIMES, _SIZES, _LENGTHS = 3, 10, 6, (0.03, 0.1, 0.3), 0.05
-# Bent shapes are led beside the targets, by up to this part of the tolerances: else these were of no use.
-_BESIDE = 0.7
+# Rounds of bending; shapes that are bent, and how many come of them; sizes of the bends in units of the
+# largest curvature; lengths change by a twentieth of that, m.
+_ROUNDS, _BENT, _VARIED, _SIZES, _LENGTHS = 4, 10, 50, (0.03, 0.1, 0.3), 0.05
+# Bent shapes are led beside the targets, by up to this part of the tolerances: else these were of no use. Of
+# tolerances below this, m, there is nothing to be had: such targets are met exactly.
+_BESIDE, _TIGHT = 0.7, 1e-3
 _PART_OF_TOLERANCE = 0.9  # that a miss may take: the rest is for rounding, and for what was not looked at
 _DISTINCT = 0.03  # m, between link ends with axes of ARM_LENGTH
 
 
 def wished(
-    task: Task, seed: int, stop: Callable[[], bool] = lambda: False
+    task: Task, known: Sequence[Arm], seed: int, stop: Callable[[], bool] = lambda: False
 ) -> Iterator[tuple[Arm, FloatArray]]:
     """Yield distinct shapes off their limits that come within the tolerances, the most wanted first.
 
@@ -59,6 +60,7 @@ def wished(
 
     Args:
         task: The task.
+        known: Shapes of equal arcs that reach the targets already.
         seed: Seed of the random shapes.
         stop: Asked after each step; when it says yes, the search ends.
 
@@ -67,27 +69,39 @@ def wished(
     """
     for joints, link in ((True, True), (True, False), (False, True)):
         narrow = drawn_in(replace(task, objective=Objective.LEAST_SQUARES), joints=joints, link=link)
-        pool = _searched(task, narrow, np.random.default_rng([seed, 5]), stop)
+        pool = _searched(task, narrow, known, np.random.default_rng([seed, 5]), stop)
         if stop():
             return
         for index in pool.distinct():
             arm = pool.population.arm(index, task.base)
             angles, _ = arm.closest_joints(task.table.positions)
             yield replace(arm, robot=task.robot), angles
-        if len(pool.order):
+        if len(pool.table):
             return
 
 
-def _searched(task: Task, narrow: Task, rng: np.random.Generator, stop: Callable[[], bool]) -> _Pool:
+def _searched(
+    task: Task, narrow: Task, known: Sequence[Arm], rng: np.random.Generator, stop: Callable[[], bool]
+) -> _Pool:
     """Return the shapes that are wanted most, with limits drawn in."""
-    pool = _Pool.of(task, narrow, refine(narrow, _promising(narrow, rng), iterations=_ITERATIONS).population)
-    for _ in range(_ROUNDS):
-        if stop() or not len(pool.order):
+    beginnings = np.concatenate(
+        [_promising(narrow, rng).unknowns, _varied(narrow.robot, [Population.of(arm) for arm in known], rng)]
+    )
+    led = refine(narrow, Population(narrow.robot, beginnings), iterations=_ITERATIONS)
+    pool = _Pool.of(task, narrow, led.population)
+    tight = float(task.tolerances.min()) < _TIGHT
+    # Where targets are met exactly and fix finitely many surfaces, bending changes nothing that counts more
+    # than the bend itself.
+    finite = tight and exact_designs(narrow) is not None
+    for _ in range(0 if finite else _ROUNDS):
+        if stop() or not len(pool.table):
             break
-        parents = pool.population.unknowns[pool.distinct()[:_BENT]]
-        bent = _bent(narrow.robot, np.repeat(parents, _TIMES, axis=0), rng)
-        led = refine(_beside(narrow, rng), bent, iterations=_ITERATIONS_AGAIN).population
-        pool = pool.joined(_Pool.of(task, narrow, led))
+        bent = _varied(narrow.robot, [pool.population.take(pool.distinct()[:_BENT])], rng)
+        led = refine(_beside(narrow, rng), Population(narrow.robot, bent), iterations=_ITERATIONS_AGAIN)
+        pool = pool.joined(_Pool.of(task, narrow, led.population))
+    if tight and len(pool.table):
+        chosen = pool.population.take(pool.distinct()[:_BENT])
+        pool = _Pool.of(task, narrow, refine(narrow, chosen, iterations=_ITERATIONS_AGAIN).population)
     return pool
 
 
@@ -109,17 +123,20 @@ def _random_shapes(robot: Robot) -> Population:
     return Population.sample(robot, _SHAPES, np.random.default_rng(0))
 
 
-def _bent(robot: Robot, unknowns: FloatArray, rng: np.random.Generator) -> Population:
-    """Return shapes bent at random by a little or more."""
-    size = rng.choice(_SIZES, (len(unknowns), 1)) * np.ones(unknowns.shape)
+def _varied(robot: Robot, parents: Sequence[Population], rng: np.random.Generator) -> FloatArray:
+    """Return unknowns of shapes bent at random by a little or more, some from each of the parents."""
+    unknowns = np.concatenate([each.unknowns for each in parents])
+    unknowns = np.resize(unknowns, (_VARIED, unknowns.shape[1]))
+    size = rng.choice(_SIZES, (_VARIED, 1)) * np.ones(unknowns.shape)
     size[:, 2 * ARCS :] *= _LENGTHS
-    return Population(robot, into_limits(robot, unknowns + size * rng.normal(size=unknowns.shape)))
+    return into_limits(robot, unknowns + size * rng.normal(size=unknowns.shape))
 
 
 def _beside(task: Task, rng: np.random.Generator) -> Task:
     """Return a task with its targets moved by a part of their tolerances, at random."""
     ways = rng.normal(size=(len(task.targets), 3))
-    ways *= (_BESIDE * rng.uniform() * task.tolerances / np.linalg.norm(ways, axis=1))[:, None]
+    room = np.where(task.tolerances < _TIGHT, 0.0, _BESIDE * rng.uniform() * task.tolerances)
+    ways *= (room / np.linalg.norm(ways, axis=1))[:, None]
     return replace(task, targets=replace(task.table, positions=task.table.positions + ways))
 
 
@@ -129,11 +146,11 @@ class _Pool:
 
     Attributes:
         population: The shapes, of shape (N,).
-        order: What `preference` says of each, shape (N, 6).
+        table: Rows of `preferences`, shape (N, 6).
     """
 
     population: Population
-    order: FloatArray
+    table: FloatArray
 
     @classmethod
     def of(cls, task: Task, narrow: Task, population: Population) -> _Pool:
@@ -160,7 +177,7 @@ class _Pool:
         expected, _ = misses_after_a_hand(
             aims, task.tolerances, population.kinematics, population.end[1], joints[..., 1]
         )
-        order = preference(
+        table = preferences(
             np.zeros(len(depth)),
             depth / clearance,
             swings.max(axis=1, initial=0.0),
@@ -168,18 +185,18 @@ class _Pool:
             swings.sum(axis=1),
             population.bending,
         )
-        return cls(population, np.stack(order, axis=1)).sorted()
+        return cls(population, table).sorted()
 
     def sorted(self) -> _Pool:
         """Return the same, the most wanted first."""
-        chosen = np.lexsort(self.order.T[::-1])
-        return _Pool(self.population.take(chosen), self.order[chosen])
+        chosen = preferred(self.table)
+        return _Pool(self.population.take(chosen), self.table[chosen])
 
     def joined(self, other: _Pool) -> _Pool:
         """Return the shapes of both."""
         unknowns = np.concatenate([self.population.unknowns, other.population.unknowns])
         return _Pool(
-            Population(self.population.robot, unknowns), np.concatenate([self.order, other.order])
+            Population(self.population.robot, unknowns), np.concatenate([self.table, other.table])
         ).sorted()
 
     def distinct(self) -> NDArray[np.intp]:
