@@ -8,9 +8,9 @@ import pytest
 from planted import ROBOT, arm_of, planted_task
 
 from synth.errors import InputError
-from synth.robot import Interval, JointLimits, LinkShape, MalleableLink, RigidLink
+from synth.robot import BasePose, Interval, JointLimits, LinkShape, MalleableLink, RigidLink
 from synth.synthesis import verify
-from synth.task import Topology
+from synth.task import Obstacle, PointTarget, Topology
 
 
 @pytest.fixture(scope="module")
@@ -124,3 +124,51 @@ def test_a_shape_that_is_no_number_is_refused(planted):
 
 def test_the_link_of_the_preset_is_the_published_one():
     assert ROBOT.link == MalleableLink(Interval(0.55, 0.7), 0.11, 0.05, 5.0)
+
+
+@pytest.mark.parametrize("moved", [BasePose([0.5, 0.0, 0.0]), BasePose([0.0, 0.0, -0.02]), BasePose(yaw=0.3)])
+def test_an_arm_that_stands_elsewhere_is_never_found(planted, moved):
+    """Targets that it reaches from there, and whatever the obstacles are seen from."""
+    task, arm = planted
+    elsewhere = replace(arm, base=moved)
+    joints, _ = arm.closest_joints(task.table.positions)
+    reached = elsewhere.forward_kinematics(*joints.T)
+    targets = tuple(PointTarget(t.name, p, t.tolerance) for t, p in zip(task.targets, reached, strict=True))
+    check = verify(replace(task, targets=targets), elsewhere)
+    assert all(check.within_tolerance)
+    assert not check.found
+    assert {violation.limit.split(":")[0] for violation in check.violations} == {"base"}
+    assert verify(replace(task, targets=targets, base=moved), elsewhere).found
+
+
+def test_a_ball_on_the_link_of_an_arm_that_stands_elsewhere_is_seen(planted):
+    task, arm = planted
+    moved = BasePose([0.5, -0.2, 0.0], 0.4)
+    elsewhere = replace(arm, base=moved)
+    joints, _ = arm.closest_joints(task.table.positions)
+    reached = elsewhere.forward_kinematics(*joints.T)
+    targets = tuple(PointTarget(t.name, p, t.tolerance) for t, p in zip(task.targets, reached, strict=True))
+    middle = arm.shape.point_at(0.5 * arm.shape.length) + arm.base_joint[1]
+    c, s = np.cos(joints[0, 0]), np.sin(joints[0, 0])
+    centre = moved.to_task([c * middle[0] - s * middle[1], s * middle[0] + c * middle[1], middle[2]])
+    ball = Sphere(centre, 0.03)
+    check = verify(replace(task, targets=targets, obstacles=(Obstacle("ball", ball),)), elsewhere)
+    assert {"base: position", "base: yaw"} == {v.limit for v in check.violations}
+    assert not check.within_tolerance[0]  # the way there that the ball blocks is not taken
+    assert verify(replace(task, targets=targets), elsewhere).within_tolerance[0]
+    position, yaw = (v.sentence for v in check.violations[:2])
+    assert position == "the arm stands 538.5 mm from where the task puts it"
+    assert yaw == "the arm stands turned by 22.92 deg from how the task puts it"
+
+
+def test_joints_that_are_to_be_kept_are_kept_within_the_tolerance_only(planted):
+    task, arm = planted
+    closest, _ = arm.closest_joints(task.table.positions)
+    nearly = closest + np.radians([0.02, 0.0])  # some tenths of a millimetre off
+    check = verify(task, arm, nearly, keep=True)
+    assert np.array_equal(check.joints, nearly)
+    assert check.found
+    assert 1e-5 < check.misses.max() < 0.5e-3
+    assert not np.array_equal(verify(task, arm, nearly).joints, nearly)
+    far = verify(task, arm, closest + np.radians([2.0, 0.0]), keep=True)
+    assert far.misses.max() < 1e-9

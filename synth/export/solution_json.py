@@ -55,6 +55,7 @@ def solution_to_json(solution: Solution) -> dict[str, Any]:
         **shape,
         "targets": _targets(task, designs[0]) if designs else _targets_missed(task),
         "ways": None if guide is None else [_way(motion) for motion in guide.ways],
+        "figures": designs[0].figures if designs else None,
         "bound": _bound(solution.bound),
         "releases": [
             {"limit": each.limit, "amount": each.amount, "share": each.share, "sentence": each.sentence}
@@ -118,6 +119,7 @@ def _alternative(task: Task, number: int, design: Design) -> dict[str, object]:
         "distances": {pair: math.sqrt(s) for pair, s in squared.items()},
         "category": design.arm.category.value,
         "link": _link(design.arm),
+        "figures": design.figures,
         "targets": [
             {"name": target.name, "miss": miss, "within_tolerance": within}
             for target, miss, within in zip(

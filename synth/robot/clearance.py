@@ -109,7 +109,12 @@ class ArmBody:
         )
 
     def from_obstacles(
-        self, start: FloatArray, solids: Sequence[Solid], *, end: FloatArray | None = None
+        self,
+        start: FloatArray,
+        solids: Sequence[Solid],
+        *,
+        end: FloatArray | None = None,
+        enough: float = MOST_CLEARANCE,
     ) -> FloatArray:
         """Return how far tube and rod keep from solids at joint angles, or on straight ways between them.
 
@@ -120,9 +125,10 @@ class ArmBody:
             start: Angles (theta1, theta2), shape (n, 2), rad.
             solids: Solids in the base frame.
             end: Angles at which the ways end, both joints moving evenly, shape (n, 2), rad.
+            enough: Clearance, m, beyond which nobody asks how much it is: the less, the faster.
 
         Returns:
-            Lower bounds of the distance between the surfaces, at most 0.1 m, negative inside; shape
+            Lower bounds of the distance between the surfaces, at most `enough`, negative inside; shape
             (n, len(solids), 2), the tube first. On a way that is not clear, minus infinity.
         """
         ways, count = _Ways(start, end), len(solids)
@@ -152,24 +158,27 @@ class ArmBody:
             (from_rod, 0.0, rod, self.rod_radius, turn * (link + rod) + second * rod),
         ):
             sides: list[_Side] = [(first, last, 1.0), (0.0, ways.share, rate)]
-            bounds.append(self._least(values, sides, radius, MOST_CLEARANCE, ways.floor))
+            bounds.append(self._least(values, sides, radius, enough, ways.floor))
         return np.stack(bounds, axis=-1).reshape(len(start), count, 2)
 
-    def rod_from_tube(self, start: FloatArray, end: FloatArray | None = None) -> FloatArray:
+    def rod_from_tube(
+        self, start: FloatArray, end: FloatArray | None = None, *, enough: float = _SELF_CEILING
+    ) -> FloatArray:
         """Return how far the rod keeps from the tube at angles of joint 2, or on ways between them.
 
         Args:
             start: The angles, shape (n,), rad.
             end: Angles at which the ways end, shape (n,), rad.
+            enough: As for `from_obstacles`.
 
         Returns:
-            Lower bounds of the distance between the surfaces, at most 0.02 m, negative where they
+            Lower bounds of the distance between the surfaces, at most `enough`, negative where they
             overlap; shape (n,). On a way that is not clear, minus infinity.
         """
         joint = self.arm.robot.link.diameter
         last = self.arm.shape.length - joint
         if joint == 0.0 or last <= 0.0 or self.rod_length <= joint:
-            return np.full(len(start), _SELF_CEILING)
+            return np.full(len(start), enough)
         ways = _Ways(start[:, None], None if end is None else end[:, None])
 
         def distance(which: NDArray[np.intp], at: FloatArray) -> FloatArray:
@@ -181,7 +190,7 @@ class ArmBody:
             (joint, self.rod_length, 1.0),
             (0.0, ways.share, ways.travel[:, 0] * self.rod_length),
         ]
-        return self._least(distance, sides, self.tube_radius + self.rod_radius, _SELF_CEILING, ways.floor)
+        return self._least(distance, sides, self.tube_radius + self.rod_radius, enough, ways.floor)
 
     def tube_from_itself(self) -> float:
         """Return how far the tube keeps from itself: a lower bound, at most 0.02 m, negative inside."""

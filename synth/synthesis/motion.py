@@ -17,11 +17,13 @@ import numpy as np
 from synth.arrays import FloatArray, frozen
 from synth.checks import refuse_unless
 from synth.robot import ArmBody, turned
+from synth.synthesis.margins import joint_shortfalls
 from synth.synthesis.solution import Design, joints_reaching
+from synth.synthesis.verification import seen_by
 from synth.task import Task
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -35,6 +37,8 @@ _GRID = (91, 64)
 _SAMPLES = 24
 _MARGINS = (0.02, 0.008, 0.003)
 _STEP = 0.02  # rad, between postures that are looked at when a way is straightened
+# What a missing way, and a posture with no margin of a joint, are worth in travel, rad: more than any ways.
+_NO_WAY, _CRAMPED = 1e6, 1e3
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +64,11 @@ class Motion:
         """Whether there is a way."""
         return len(self.joints) > 0
 
+    @property
+    def travel(self) -> float:
+        """Travel of the joint that moves more, rad; 0 if no way was found."""
+        return _travel(self.joints)
+
     def describe(self) -> str:
         """Return which way, in degrees."""
         if not self.found:
@@ -79,7 +88,8 @@ class Motion:
 def motions(task: Task, design: Design) -> tuple[Motion, ...]:
     """Return how the arm gets from each target to the next, in the order of the task.
 
-    Where a target is reached at several joint angles, those are taken that shorten the ways altogether.
+    Where a target is reached at several joint angles, those are taken that keep off the limits of the joints
+    and shorten the ways altogether.
 
     Args:
         task: The task.
@@ -90,32 +100,40 @@ def motions(task: Task, design: Design) -> tuple[Motion, ...]:
     """
     refuse_unless("task", task, Task)
     refuse_unless("design", design, Design)
-    room = _Room(task, design)
+    return design.ways or routed(task, design)[0]
+
+
+def routed(task: Task, design: Design) -> tuple[tuple[Motion, ...], FloatArray]:
+    """Return the ways as `motions` does, and the joint angles that they take at each target, (n, 2), rad."""
     postures = joints_reaching(task, design)
-    # To each posture of a target the best travel so far, rad, and the postures and ways that it takes.
-    best: list[tuple[float, list[FloatArray]]] = [(0.0, []) for _ in postures[0]]
-    for here, there in itertools.pairwise(postures):
-        ways = room.ways(here, there)
+    ways = _Room(task, design).ways(postures)
+    cramped = [_CRAMPED * joint_shortfalls(task.robot, joints) for joints in postures]
+    # To each posture of a target the least cost so far, rad, and which postures are taken on the way there.
+    best: list[tuple[float, tuple[int, ...]]]
+    best = [(float(cost), (index,)) for index, cost in enumerate(cramped[0])]
+    for step, costs in enumerate(cramped[1:]):
         best = [
             min(
-                (
-                    (travel + _length(ways[i, j]), [*taken, ways[i, j]])
-                    for i, (travel, taken) in enumerate(best)
-                ),
-                key=lambda each: each[0],
+                (cost + _cost(ways[step][taken[-1], there]) + float(costs[there]), (*taken, there))
+                for cost, taken in best
             )
-            for j in range(len(there))
+            for there in range(len(costs))
         ]
-    _, chosen = min(best, key=lambda each: each[0])
+    _, chosen = min(best)
     names = [target.name for target in task.targets]
-    return tuple(Motion(*pair, way) for pair, way in zip(itertools.pairwise(names), chosen, strict=True))
+    found = (ways[step][pair] for step, pair in enumerate(itertools.pairwise(chosen)))
+    motions = tuple(Motion(*pair, way) for pair, way in zip(itertools.pairwise(names), found, strict=True))
+    return motions, np.array([joints[index] for joints, index in zip(postures, chosen, strict=True)])
 
 
-def _length(way: FloatArray) -> float:
-    """Return the travel of the joint that moves more, rad; where there is no way, more than any."""
-    if not len(way):
-        return 1e3
-    return float(np.abs(np.diff(way, axis=0)).max(axis=1).sum())
+def _cost(way: FloatArray) -> float:
+    """Return the travel on a way, rad; where there is none, more than any."""
+    return _travel(way) if len(way) else _NO_WAY
+
+
+def _travel(way: FloatArray) -> float:
+    """Return the travel of the joint that moves more, piece by piece, rad."""
+    return float(np.abs(np.diff(way, axis=0)).max(axis=1, initial=0.0).sum())
 
 
 class _Room:
@@ -124,32 +142,64 @@ class _Room:
     def __init__(self, task: Task, design: Design) -> None:
         self._body = ArmBody(design.arm)
         self._limits = task.robot.joint_limits
-        self._solids: list[Solid] = list(task.solids)
+        self._solids: list[Solid] = list(seen_by(task, design.arm))
         # For the rod only: joint 1 keeps all heights, so the tube stays where it is over the floor.
         self._floor = -np.inf if task.floor is None else task.floor
 
-    def ways(self, here: FloatArray, there: FloatArray) -> dict[tuple[int, int], FloatArray]:
-        """Return a way between each posture of one target, (k, 2), and each of the next, (l, 2)."""
-        pairs = list(itertools.product(range(len(here)), range(len(there))))
-        start, end = np.array([here[i] for i, _ in pairs]), np.array([there[j] for _, j in pairs])
-        ways = {
-            pair: np.stack([a, b]) if clear else np.empty((0, 2))
-            for pair, clear, a, b in zip(pairs, self.clear(start, end), start, end, strict=True)
-        }
-        if not any(len(way) for way in ways.values()):
-            for pair, a, b in zip(pairs, start, end, strict=True):
-                ways[pair] = self._way_around(a, b)
-                if len(ways[pair]):
-                    break
+    def ways(self, postures: Sequence[FloatArray]) -> list[dict[tuple[int, int], FloatArray]]:
+        """Return for each target but the last a way from each of its postures to each of the next target's.
+
+        Args:
+            postures: Joint angles at each target, shape (k, 2), rad.
+        """
+        steps = [
+            list(itertools.product(range(len(here)), range(len(there))))
+            for here, there in itertools.pairwise(postures)
+        ]
+        if not steps:
+            return []
+        start = np.array([postures[step][i] for step, pairs in enumerate(steps) for i, _ in pairs])
+        end = np.array([postures[step + 1][j] for step, pairs in enumerate(steps) for _, j in pairs])
+        straight = iter(zip(self.clear(start, end), start, end, strict=True))
+        ways = []
+        for pairs in steps:
+            some = {pair: next(straight) for pair in pairs}
+            ways.append({pair: np.stack([a, b])[: 2 if clear else 0] for pair, (clear, a, b) in some.items()})
+            if not any(len(way) for way in ways[-1].values()):
+                self._go_around(ways[-1], some)
         return ways
+
+    def _go_around(
+        self,
+        ways: dict[tuple[int, int], FloatArray],
+        some: dict[tuple[int, int], tuple[np.bool_, FloatArray, FloatArray]],
+    ) -> None:
+        """Put the first way around what is in between in the place of one that is not clear."""
+        # The arm's own clearance and that of the floor depend on joint 2 alone, and every way passes all
+        # angles between its ends: without obstacles, where the straight way is closed, all are.
+        for pair, (_, start, end) in some.items() if self._solids else ():
+            ways[pair] = self._way_around(start, end)
+            if len(ways[pair]):
+                break
 
     def clear(self, start: FloatArray, end: FloatArray) -> NDArray[np.bool_]:
         """Return whether straight ways, shape (n, 2), are certainly clear."""
-        body = self._body
-        least = body.from_obstacles(start, self._solids, end=end).min(axis=(1, 2), initial=np.inf)
-        itself = body.rod_from_tube(start[:, 1], end[:, 1])
-        over_floor = self._over_floor(start[:, 1], end[:, 1])
-        return np.asarray(np.minimum(np.minimum(least, itself), over_floor) >= body.clear)
+        clear = self._clear_of_itself(start[:, 1], end[:, 1])
+        some = np.flatnonzero(clear)
+        if self._solids and len(some):
+            least = self._body.from_obstacles(start[some], self._solids, end=end[some], enough=0.0)
+            clear[some] = least.min(axis=(1, 2)) >= self._body.clear
+        return clear
+
+    def _clear_of_itself(self, start: FloatArray, end: FloatArray) -> NDArray[np.bool_]:
+        """Return whether the rod is clear of tube and floor as theta2 goes from start to end, shape (n,)."""
+        # Mostly all is clear between the least and the largest angle: one question in place of n.
+        whole = np.array([min(start.min(), end.min())]), np.array([max(start.max(), end.max())])
+        for ways in (whole, (start, end)):
+            least = np.minimum(self._body.rod_from_tube(*ways, enough=0.0), self._over_floor(*ways))
+            if (least >= self._body.clear).all():
+                return np.ones(len(start), dtype=np.bool_)
+        return np.asarray(least >= self._body.clear)
 
     def _over_floor(self, start: FloatArray, end: FloatArray) -> FloatArray:
         """Return how far the rod stays over the floor as theta2 goes from start to end, shape (n,), m.
@@ -170,7 +220,7 @@ class _Room:
         theta1 = np.linspace(first.lower, first.upper, _GRID[0])
         theta2 = np.linspace(second.lower, second.upper, _GRID[1])
         grid = np.stack(np.meshgrid(theta1, theta2, indexing="ij"), axis=-1)
-        sampled = self._sampled_clearance(grid.reshape(-1, 2)).reshape(_GRID)
+        sampled = self._sampled_clearance(theta1[:, None], theta2[None])
         for margin in _MARGINS:
             nodes = _shortest(sampled > margin, _node(grid, start), _node(grid, end))
             if nodes is None:
@@ -188,26 +238,36 @@ class _Room:
                 count = 2 + int(np.abs(way[there] - way[here]).max() / _STEP)
                 steps = way[here] + np.linspace(0.0, 1.0, count)[:, None] * (way[there] - way[here])
                 # At the targets themselves it may be narrower.
-                if there == here + 1 or (self._sampled_clearance(steps) > 0.5 * margin).all():
+                if there == here + 1 or (self._sampled_clearance(*steps.T) > 0.5 * margin).all():
                     break
             kept.append(way[there])
             here = there
         return np.array(kept)
 
-    def _sampled_clearance(self, joints: FloatArray) -> FloatArray:
-        """Return about how far tube and rod keep from everything, at joint angles (N, 2), by samples."""
+    def _sampled_clearance(self, theta1: FloatArray, theta2: FloatArray) -> FloatArray:
+        """Return about how far tube and rod keep from everything, by samples, m.
+
+        The tube moves with joint 1 alone, and what the rod keeps from tube and floor depends on joint 2
+        alone: on a grid of angles, shapes (k, 1) and (1, l), these are asked for few angles.
+
+        Args:
+            theta1: Angles of joint 1, rad.
+            theta2: Angles of joint 2, rad; both broadcast.
+        """
         body = self._body
         share = np.linspace(0.0, 1.0, _SAMPLES)
         tube = body.tube(body.tube_radius + share * (body.arm.shape.length - body.tube_radius))
         joint = min(body.arm.robot.link.diameter, body.rod_length)
-        rod = body.rod(joint + share * (body.rod_length - joint), joints[:, 1:])
-        apart = np.linalg.norm(rod[:, :, None] - tube[_before_the_joint(body, share)], axis=-1)
-        least = apart.min(axis=(1, 2)) - body.tube_radius - body.rod_radius
-        least = np.minimum(least, rod[..., 2].min(axis=1) - body.rod_radius - self._floor)
-        for points, radius in ((tube, body.tube_radius), (rod, body.rod_radius)):
-            there = turned(points, joints[:, :1])
-            for solid in self._solids:
-                least = np.minimum(least, solid.distance(there).min(axis=1) - radius)
+        rod = body.rod(joint + share * (body.rod_length - joint), theta2[..., None])
+        apart = np.linalg.norm(rod[..., None, :] - tube[_before_the_joint(body, share)], axis=-1)
+        least = apart.min(axis=(-2, -1)) - body.tube_radius - body.rod_radius
+        least = np.minimum(least, rod[..., 2].min(axis=-1) - body.rod_radius - self._floor)
+        tube, rod = turned(tube, theta1[..., None]), turned(rod, theta1[..., None])
+        for solid in self._solids:
+            from_tube = solid.distance(tube).min(axis=-1) - body.tube_radius
+            least = np.minimum(
+                least, np.minimum(from_tube, solid.distance(rod).min(axis=-1) - body.rod_radius)
+            )
         return np.asarray(least)
 
 

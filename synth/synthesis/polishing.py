@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from synth.errors import SolverError
 from synth.synthesis.nlp import Structure, SynthesisNlp, shared_nlp
 from synth.synthesis.population import ARCS
-from synth.synthesis.ranking import rank
+from synth.synthesis.ranking import objective
 from synth.synthesis.separation import separations
 from synth.synthesis.solution import Design
 from synth.synthesis.verification import verify
@@ -79,9 +79,9 @@ class Polishing:
                 # The start kept clearer of itself than where the way from there led without planes.
                 arm, joints, itself = start.arm, start.joints, True
             # Other planes may give way: as long as they do, or as something is in the way.
-            objective = rank(self.task, design)[1]
-            done = not planes or objective > _GAINED * best or design.verification.found
-            best = min(best, objective)
+            misses = objective(self.task, design)
+            done = not planes or misses > _GAINED * best or design.verification.found
+            best = min(best, misses)
             if (done and not clashes) or self.watch.is_up():
                 return
 
@@ -93,9 +93,15 @@ class Polishing:
             return SynthesisNlp(structure, ARCS, planes)
         return shared_nlp(structure, ARCS, near, threading.get_ident())
 
-    def keep(self, arm: Arm, joints: FloatArray) -> Design:
-        """Check a shape, keep it where it belongs, and return it."""
+    def keep(self, arm: Arm, joints: FloatArray, *, stay: bool = False) -> Design:
+        """Check a shape, keep it where it belongs, and return it.
+
+        Args:
+            arm: The robot in the shape.
+            joints: Joint angles at the targets that `verify` considers, shape (n, 2), rad.
+            stay: Whether it keeps these where they will do.
+        """
         with self.watch.on("verifying"):
-            design = Design(arm, verify(self.task, arm, joints))
+            design = Design(arm, verify(self.task, arm, joints, keep=stay))
         (self.designs if design.verification.possible else self.blocked).append(design)
         return design

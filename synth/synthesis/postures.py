@@ -122,12 +122,18 @@ class Postures:
         """
         second = aims.limits.second
         branches = kinematics.each_target().branches(aims.positions)[..., 1]
-        both = [cls._led(aims, kinematics, into_turn(branches[..., i], second.middle)) for i in range(2)]
+        both = [cls.led_from(aims, kinematics, into_turn(branches[..., i], second.middle)) for i in range(2)]
         return both[0].where(both[0].squared <= both[1].squared, both[1])
 
     @classmethod
-    def _led(cls, aims: Aims, kinematics: Kinematics, theta2: FloatArray) -> Postures:
-        """Return postures after a few Gauss-Newton steps of joint 2, joint 1 always at its best."""
+    def led_from(cls, aims: Aims, kinematics: Kinematics, theta2: FloatArray) -> Postures:
+        """Return postures after a few Gauss-Newton steps of joint 2 from angles, joint 1 always at its best.
+
+        Args:
+            aims: The targets.
+            kinematics: The joints of the shapes, of shape (N,).
+            theta2: Angles of joint 2 to start from, shape (N, n), rad.
+        """
         second = aims.limits.second
         here = cls.at(aims, kinematics, np.clip(theta2, second.lower, second.upper))
         for _ in range(_NEWTON_STEPS):

@@ -18,11 +18,12 @@ from synth.synthesis.impossibility import why_impossible
 from synth.synthesis.many_targets import improved, levelled, ranked
 from synth.synthesis.polishing import Polishing
 from synth.synthesis.population import in_equal_arcs
-from synth.synthesis.ranking import best_of, rank
+from synth.synthesis.ranking import best_of, objective
 from synth.synthesis.screening import Start, starts
 from synth.synthesis.solution import Design, Solution, Status
 from synth.synthesis.verdict import message, why_no_better
 from synth.synthesis.verification import verify
+from synth.synthesis.wished import wished
 from synth.task import Objective
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
 _STARTS_AT_MOST = 48
 _STARTS_WHEN_IMPOSSIBLE = 12  # for a good best effort
 _FOLLOWED = 2  # shapes of a neighbour that are polished
-ALTERNATIVES = 4  # starts polished after a shape was found: for distinct, gentler and nearer ones
+ALTERNATIVES = 3  # starts polished after a shape was found: for distinct, gentler and nearer ones
 _ALTERNATIVES_THAT_MISS = 2  # likewise, at most, where no shape meets all targets
 _GAIN = 1e-3  # of the objective: the least that is worth another start
 _PROOF_TIME = 60.0  # s
@@ -105,16 +106,35 @@ class Search:
                 no_better += 1
                 if no_better > min(_ALTERNATIVES_THAT_MISS, self.alternatives):
                     continue
-            if self._promises_all(start):
-                self.polishing.keep(start.arm, start.joints)
-            self.polishing.polish(start)
-            if self._led_astray(start) and self.polishing.keep(start.arm, start.joints).verification.possible:
-                self.polishing.polish(start, near=True)
-            self.starts += 1
-            self.starts_found += self.polishing.found
-            self._report()
+            self._polish(start)
+            if self.starts_found == 1 and self.alternatives and self._wished_for():
+                return
             if self.starts >= self.starts_at_most or self.starts_found > self.alternatives:
                 return
+
+    def _polish(self, start: Start) -> None:
+        if self._promises_all(start):
+            self.polishing.keep(start.arm, start.joints)
+        self.polishing.polish(start)
+        if self._led_astray(start) and self.polishing.keep(start.arm, start.joints).verification.possible:
+            self.polishing.polish(start, near=True)
+        self.starts += 1
+        self.starts_found += self.polishing.found
+        self._report()
+
+    def _wished_for(self) -> bool:
+        """Look for shapes that a person would rather have than the first one; whether there are any."""
+        known = [design.arm for design in self.polishing.designs if design.verification.found]
+        found, candidates = 0, wished(self.part, known, self.seed, self.watch.is_up)
+        for _ in range(2 * self.alternatives):
+            with self.watch.on("solving"):
+                candidate = next(candidates, None)
+            if candidate is None or self.watch.is_up():
+                break
+            found += self.polishing.keep(*candidate, stay=True).verification.found
+            if found == self.alternatives:
+                break
+        return found > 0
 
     def _promises_all(self, start: Start) -> bool:
         """Whether a start may reach every target as it is, and the program may lose it among obstacles."""
@@ -132,7 +152,7 @@ class Search:
         least = start.cost / float(self.part.tolerances.min()) ** 2  # in the mean, so also of the worst
         if self.part.objective is Objective.LEAST_SQUARES:
             least *= len(self.part.targets)
-        best = min(rank(self.part, design)[1] for design in self.polishing.designs)
+        best = min(objective(self.part, design) for design in self.polishing.designs)
         return least < (1.0 - _GAIN) * best
 
     def _led_astray(self, start: Start) -> bool:

@@ -17,14 +17,19 @@ if TYPE_CHECKING:
     from synth.synthesis.solution import Design, Solution, Status
     from synth.task import Task
 
+_REACHED_WITHOUT_WAY = "every target is reached, but"
 _REASONS = 3  # of a kind that are told
 
 
 def message(task: Task, status: Status, designs: Sequence[Design], reasons: Sequence[str]) -> str:
     """Return how a search ended in one sentence: its status, what the best shape misses, and why."""
     misses = _what_misses(task, designs[0]) if designs else []
-    headline = status.told(with_shape=bool(designs))
-    return ": ".join(filter(None, [headline, "; ".join([*misses, *reasons])]))
+    ways = designs[0].ways if designs else ()
+    no_way = [f"no way was found from {way.start} to {way.end}" for way in ways if not way.found]
+    if no_way and not misses:
+        more = [f"and {len(no_way) - _REASONS} more"] if len(no_way) > _REASONS else []
+        return f"{_REACHED_WITHOUT_WAY} {'; '.join([*no_way[:_REASONS], *more])}"
+    return ": ".join(filter(None, [status.told(with_shape=bool(designs)), "; ".join([*misses, *reasons])]))
 
 
 def showing(solution: Solution, number: int) -> Solution:

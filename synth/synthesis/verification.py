@@ -19,7 +19,8 @@ from synth.task import Task, Topology
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from synth.robot import Interval
+    from synth.geometry import Solid
+    from synth.robot import BasePose, Interval
 
 # What rounding may do: a micrometre, a microradian.
 _LENGTH_SLACK = 1e-6
@@ -77,14 +78,19 @@ class Verification:
         return self.possible and all(self.within_tolerance)
 
 
-def verify(task: Task, arm: Arm, joints: FloatArray | None = None) -> Verification:
+def verify(task: Task, arm: Arm, joints: FloatArray | None = None, *, keep: bool = False) -> Verification:
     """Check a shape against a task.
+
+    Everything is seen from the base of the arm, and from nowhere else; an arm that stands elsewhere than
+    the task says breaks a limit by that alone.
 
     Args:
         task: The task.
         arm: The robot in the shape.
         joints: Joint angles to consider beside the closest ones and the branches of the inverse
             kinematics, shape (n, 2), rad: at the closest point the arm may be in the way of something.
+        keep: Whether the arm shall stand at these angles wherever they reach the target within its
+            tolerance, and clear of everything, though others come nearer.
 
     Returns:
         The misses by forward kinematics and every limit that is broken.
@@ -102,6 +108,8 @@ def verify(task: Task, arm: Arm, joints: FloatArray | None = None) -> Verificati
     floor = -math.inf if task.floor is None else task.floor
     sunk = arm.base.to_base(points)[..., 2] - ArmBody(arm).rod_radius < floor - _LENGTH_SLACK
     misses = np.where(sunk, np.inf, misses)
+    if joints is not None and keep:
+        misses[1][misses[1] <= task.tolerances] = -1.0  # before all others
     # The nearest candidate is mostly the one; the others are looked at where it is in the way of something.
     each, best = np.arange(len(targets)), np.argmin(misses, axis=0)
     room = _Room.of(task, arm, candidates[best, each])
@@ -123,6 +131,7 @@ def verify(task: Task, arm: Arm, joints: FloatArray | None = None) -> Verificati
         gamma_residuals=frozen(arm.surface.residual(arm.base.to_base(reached))),
         clearances=frozen(room.from_obstacles.min(axis=(-2, -1), initial=math.inf)),
         violations=(
+            *_base_violations(task.base, arm.base),
             *_length_violations(arm),
             *_bend_violations(arm),
             *_joint_violations(arm, candidates[chosen]),
@@ -151,13 +160,13 @@ class _Room:
     @classmethod
     def of(cls, task: Task, arm: Arm, candidates: FloatArray) -> _Room:
         """Return the room about an arm at joint angles, shape (..., n, 2), rad."""
-        body, shape = ArmBody(arm), candidates.shape[:-1]
+        body, solids, shape = ArmBody(arm), seen_by(task, arm), candidates.shape[:-1]
         joints = candidates.reshape(-1, 2)
         parts = np.split(joints, range(_TOGETHER, len(joints), _TOGETHER))
-        from_obstacles = np.concatenate([body.from_obstacles(part, task.solids) for part in parts])
+        from_obstacles = np.concatenate([body.from_obstacles(part, solids) for part in parts])
         rod_from_tube = np.concatenate([body.rod_from_tube(part[:, 1]) for part in parts])
         return cls(
-            from_obstacles.reshape(*shape, len(task.solids), 2),
+            from_obstacles.reshape(*shape, len(solids), 2),
             rod_from_tube.reshape(shape),
             body.tube_from_itself(),
         )
@@ -180,6 +189,11 @@ class _Room:
         return _Room(from_obstacles, rod_from_tube, self.tube_from_itself)
 
 
+def seen_by(task: Task, arm: Arm) -> tuple[Solid, ...]:
+    """Return the obstacles of a task in the base frame of an arm, wherever that stands."""
+    return tuple(obstacle.solid.seen_from(arm.base.position, arm.base.yaw) for obstacle in task.obstacles)
+
+
 def clear_of_everything(task: Task, arm: Arm, joints: FloatArray) -> NDArray[np.bool_]:
     """Return whether an arm at joint angles, shape (n, 2), rad, keeps clear of obstacles and of itself."""
     return np.asarray(_Room.of(task, arm, joints).least >= -_LENGTH_SLACK)
@@ -195,6 +209,21 @@ def _exceeds(limit: str, value: float, bound: float, slack: float, sentence: str
 def _outside(interval: Interval, values: FloatArray | float) -> float:
     """Return how far the worst of the values is outside the interval; negative for all inside."""
     return float(np.max(np.maximum(interval.lower - values, values - interval.upper), initial=-math.inf))
+
+
+def _base_violations(asked: BasePose, stands: BasePose) -> list[Violation]:
+    moved = float(np.linalg.norm(stands.position - asked.position))
+    turned = abs(math.remainder(stands.yaw - asked.yaw, 2.0 * math.pi))
+    return [
+        *_exceeds(
+            "base: position", moved, 0.0, _LENGTH_SLACK,
+            f"the arm stands {1e3 * moved:.4g} mm from where the task puts it",
+        ),
+        *_exceeds(
+            "base: yaw", turned, 0.0, _ANGLE_SLACK,
+            f"the arm stands turned by {math.degrees(turned):.4g} deg from how the task puts it",
+        ),
+    ]  # fmt: skip
 
 
 def _length_violations(arm: Arm) -> list[Violation]:
