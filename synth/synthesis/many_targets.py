@@ -17,7 +17,7 @@ import numpy as np
 from synth.robot import Interval, link_to_pose
 from synth.synthesis.population import Population, in_equal_arcs
 from synth.synthesis.postures import Aims, Postures
-from synth.synthesis.refinement import refine
+from synth.synthesis.refinement import Refined, level, refine
 from synth.synthesis.thinning import thinned
 from synth.task import Objective
 
@@ -34,7 +34,7 @@ _MOST_TARGETS = {Objective.LEAST_SQUARES: 100, Objective.MINIMAX: 40}
 _PART = 40  # of more targets, those that it knows at first
 # Steps with a larger part, and then with all.
 _SAMPLE, _STEPS, _STEPS_WITH_ALL = 2000, 8, 2
-_LAWSON_STEPS, _LEAST_SHARE = 25, 1e-6
+_LEVELLINGS = 3
 
 
 def part_of(task: Task, seed: int) -> Task:
@@ -151,34 +151,31 @@ def _with_joint_1_clear(task: Task, arm: Arm, watch: Watch) -> Arm | None:
 
 
 def levelled(task: Task, arm: Arm, watch: Watch) -> Arm:
-    """Return an arm whose worst miss over all targets is less, by Lawson's weights.
+    """Return an arm whose worst miss over all targets is less.
 
-    A weighted sum of squares whose weights are multiplied by the misses again and again tends to the least
-    worst miss: its weights come to rest on the targets that decide (Lawson 1961). Those missed most of
-    all, up to the size of the larger part, stand for all.
+    Those missed most of all, up to the size of the larger part, stand for all; once the arm has moved others
+    may be among them, so they are taken anew.
 
     Args:
         task: The task with all its targets.
         arm: The robot in a shape near the best, of equal arcs.
         watch: When it is up, no more steps are taken.
     """
-    best, least = arm, _relative_misses(task, arm)
-    worst = task.table.take(np.sort(np.argsort(-least, kind="stable")[:_SAMPLE]))
-    some = replace(task, targets=worst, objective=Objective.LEAST_SQUARES)
-    share = np.full(len(worst), 1.0)
-    for _ in range(_LAWSON_STEPS):
+    least = _relative_misses(task, arm)
+    for _ in range(_LEVELLINGS):
         if watch.is_up():
             break
         watch.tell(phase="levelling the misses")
-        relative = _relative_misses(some, arm)
-        share = np.maximum(share * relative / relative.max(), _LEAST_SHARE)
-        weighted = replace(some, targets=replace(worst, weights=worst.weights * share))
-        theta2 = arm.closest_joints(worst.positions)[0][None, :, 1]
-        arm = refine(weighted, Population.of(arm), theta2, iterations=2).population.arm(0, task.base)
-        if _relative_misses(some, arm).max() < least.max():
-            misses = _relative_misses(task, arm)
-            best, least = (arm, misses) if misses.max() < least.max() else (best, least)
-    return best
+        worst = task.table.take(np.sort(np.argsort(-least, kind="stable")[:_SAMPLE]))
+        joints, _misses = arm.closest_joints(worst.positions)
+        some = replace(task, targets=worst, objective=Objective.MINIMAX)
+        start = Refined(Population.of(arm), joints[None], np.zeros(1))
+        lower = level(some, start).population.arm(0, task.base)
+        misses = _relative_misses(task, lower)
+        if misses.max() >= least.max():
+            break
+        arm, least = lower, misses
+    return arm
 
 
 def _relative_misses(task: Task, arm: Arm) -> FloatArray:
