@@ -74,3 +74,36 @@ def test_a_wall_right_round_a_target_leaves_no_way():
         assert len(way.joints) > 2
     else:
         assert way.describe() == "target 1 to target 2: no way was found that keeps clear"
+
+
+def test_without_obstacles_no_way_around_is_looked_for(monkeypatch):
+    def never(*_):
+        raise AssertionError
+
+    monkeypatch.setattr("synth.synthesis.motion._shortest", never)
+    for seed in range(5):
+        task, arm = planted_task(seed, 5)
+        assert len(motions(task, Design(arm, verify(task, arm)))) == 4
+
+
+def test_a_way_that_the_floor_closes_is_closed_for_good():
+    """Between two angles of joint 2 every way passes all others; here the rod would dip below the floor."""
+    for seed in range(40):
+        _, arm = planted_task(seed, 2)
+        theta2 = np.linspace(1.2, 5.0, 200)
+        heights = arm.forward_kinematics(2.0, theta2)[:, 2]
+        lowest = int(np.argmin(heights))
+        if 40 < lowest < 160:
+            break
+    ends = theta2[[lowest - 40, lowest + 40]]
+    points = arm.forward_kinematics(np.array([2.0, 3.0]), ends)
+    floor = 0.5 * (points[:, 2].min() + heights[lowest])
+    assert heights[lowest] < floor - 0.01
+    task, _ = planted_task(5, 2)
+    targets = tuple(replace(t, position=p) for t, p in zip(task.targets, points, strict=True))
+    task = replace(task, targets=targets, floor=float(floor))
+    joints = np.column_stack([[2.0, 3.0], ends])
+    (way,) = motions(task, Design(arm, verify(task, arm, joints)))
+    assert not way.found
+    (way,) = motions(replace(task, floor=None), Design(arm, verify(replace(task, floor=None), arm, joints)))
+    assert way.found

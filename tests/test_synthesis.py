@@ -9,7 +9,10 @@ import pytest
 from planted import ROBOT, feasible, nearly_special_task, out_of_reach, planted_task
 
 from synth.robot import BasePose, Interval, MalleableLink, RigidLink
-from synth.synthesis import NotFoundError, Status, solve
+from synth.synthesis import NotFoundError, Status, solve, verify
+from synth.synthesis.figures import judged
+from synth.synthesis.solution import Design
+from synth.synthesis.verdict import message
 from synth.task import Objective, PointTarget, Task, Topology
 
 SPECIAL = [Topology.SPHERICAL, Topology.PUMA, Topology.SCARA]
@@ -308,3 +311,13 @@ def test_the_solution_says_itself_in_json():
 
     solution = solve(planted_task(16, 2)[0])
     assert json.loads(json.dumps(solution_to_json(solution), allow_nan=False))["status"] == "found"
+
+
+def test_a_way_that_is_missing_is_said_first():
+    task, arm = planted_task(5, 3)
+    design = judged(task, Design(arm, verify(task, arm)))
+    assert message(task, Status.FOUND, [design], ()) == "every target is within its tolerance"
+    closed = replace(design, ways=(replace(design.ways[0], joints=np.empty((0, 2))), *design.ways[1:]))
+    assert message(task, Status.FOUND, [closed], ()) == (
+        "every target is reached, but no way was found from target 1 to target 2"
+    )

@@ -38,9 +38,10 @@ def solve(
         warm_start: The solution of a task nearby, of the same robot: targets a few millimetres or
             centimetres away. If one of its two best shapes, polished for this task, reaches every target
             it is returned, with no other shapes beside it. If not, the whole search follows.
-        alternatives: How many start points are polished once a shape reaches every target, for gentler and
-            other ones; where none does, at most two that promise nothing better than the best. 0 gives the
-            first shape, in half the time.
+        alternatives: How many other shapes are looked for once one reaches every target: those that a person
+            would want, which see `ranking`; where there are none, so many other start points are polished.
+            Where no shape reaches every target, at most two are polished that promise nothing better than the
+            best. 0 gives the first shape, in half the time, wherever it leans.
         prove: Whether to bound how little any shape can miss; that takes seconds, a minute at most.
         time_limit: Time after which the best shape so far is returned, s.
         stop: Asked many times a second; when it says yes, the best shape so far is returned.

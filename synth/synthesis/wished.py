@@ -20,7 +20,7 @@ from synth.synthesis.margins import Margins, drawn_in
 from synth.synthesis.motion import MOST_MOTIONS
 from synth.synthesis.population import ARCS, ARM_LENGTH, Population, into_limits
 from synth.synthesis.postures import Aims, Postures
-from synth.synthesis.ranking import preferences, preferred
+from synth.synthesis.ranking import STEPS, preferences, preferred
 from synth.synthesis.refinement import refine, relative_weights
 from synth.synthesis.screening import estimated_misses
 from synth.synthesis.separation import overlaps
@@ -35,14 +35,17 @@ if TYPE_CHECKING:
     from synth.robot import Arm, Robot
     from synth.task import Task
 
-# Random shapes; so many of them, half the best, half at random from the good ones, are led to the targets.
-_SHAPES, _LED, _GOOD = 10_000, 80, 2_000
+# Random shapes; so many of them are led to the targets, half of them the best, half the calmest of some that
+# are drawn from the good ones.
+_SHAPES, _LED, _GOOD, _ASKED = 5_000, 60, 500, 200
 _PER_DESIGN = 6  # shapes looked at near each exact design, where there are any
 _FAR = 0.3  # m; misses are compared up to here
 _ITERATIONS, _ITERATIONS_AGAIN = 12, 6
 # Rounds of bending; shapes that are bent, and how many come of them; sizes of the bends in units of the
 # largest curvature; lengths change by a twentieth of that, m.
-_ROUNDS, _BENT, _VARIED, _SIZES, _LENGTHS = 4, 10, 50, (0.03, 0.1, 0.3), 0.05
+_ROUNDS, _BENT, _VARIED, _SIZES, _LENGTHS = 10, 10, 50, (0.03, 0.1, 0.3), 0.05
+# So many rounds that gain no step of the first columns of `preferences` are the last.
+_PATIENCE, _COUNTS = 3, 4
 # Bent shapes are led beside the targets, by up to this part of the tolerances: else these were of no use. Of
 # tolerances below this, m, there is nothing to be had: such targets are met exactly.
 _BESIDE, _TIGHT = 0.7, 1e-3
@@ -93,8 +96,12 @@ def _searched(
     # Where targets are met exactly and fix finitely many surfaces, bending changes nothing that counts more
     # than the bend itself.
     finite = tight and exact_designs(narrow) is not None
+    gained = [np.full(_COUNTS, np.inf)]
     for _ in range(0 if finite else _ROUNDS):
         if stop() or not len(pool.table):
+            break
+        gained.append(pool.table[0, :_COUNTS])
+        if len(gained) > _PATIENCE and (gained[-1] > gained[-1 - _PATIENCE] - STEPS[:_COUNTS]).all():
             break
         bent = _varied(narrow.robot, [pool.population.take(pool.distinct()[:_BENT])], rng)
         led = refine(_beside(narrow, rng), Population(narrow.robot, bent), iterations=_ITERATIONS_AGAIN)
@@ -110,8 +117,10 @@ def _promising(task: Task, rng: np.random.Generator) -> Population:
     shapes = _random_shapes(task.robot)
     misses = np.minimum(estimated_misses(task, shapes), _FAR)
     order = np.argsort(relative_weights(task) @ misses**2, kind="stable")
-    good = rng.choice(order[:_GOOD], _LED // 2, replace=False)
-    chosen = np.union1d(order[: _LED // 2], good)
+    good = rng.permutation(order[:_GOOD])[:_ASKED]
+    postures = Postures.nearest(Aims(task.positions, task.robot.joint_limits), shapes.take(good).kinematics)
+    calm = good[np.argsort(_swings(postures.joints).max(axis=1, initial=0.0), kind="stable")]
+    chosen = np.union1d(order[: _LED // 2], calm[: _LED // 2])
     if designs := exact_designs(task):
         chosen = np.union1d(chosen, nearest_to_designs(shapes, designs, _PER_DESIGN))
     return shapes.take(chosen)
@@ -171,9 +180,7 @@ class _Pool:
         clearance = Margins.wanted(task.robot).clearance
         clear = depth <= clearance
         population, joints, depth = population.take(clear), joints[clear], depth[clear]
-        swings = np.abs(np.diff(joints, axis=1)).max(axis=2)
-        if len(task.targets) > MOST_MOTIONS:
-            swings = swings[:, :0]
+        swings = _swings(joints)
         expected, _ = misses_after_a_hand(
             aims, task.tolerances, population.kinematics, population.end[1], joints[..., 1]
         )
@@ -209,6 +216,19 @@ class _Pool:
             if apart[index, kept].all():
                 kept.append(index)
         return np.array(kept, dtype=np.intp)
+
+
+def _swings(joints: FloatArray) -> FloatArray:
+    """Return the turns from each target to the next of the joint that turns more, rad, shape (N, n - 1).
+
+    None where there are so many targets that nobody asks for ways between them.
+
+    Args:
+        joints: Joint angles, shape (N, n, 2), rad.
+    """
+    if joints.shape[1] > MOST_MOTIONS:
+        joints = joints[:, :1]
+    return np.asarray(np.abs(np.diff(joints, axis=1)).max(axis=2))
 
 
 def _over_floor(task: Task, population: Population, joints: FloatArray) -> NDArray[np.bool_]:
