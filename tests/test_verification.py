@@ -8,6 +8,7 @@ import pytest
 from planted import ROBOT, arm_of, planted_task
 
 from synth.errors import InputError
+from synth.geometry import Sphere
 from synth.robot import BasePose, Interval, JointLimits, LinkShape, MalleableLink, RigidLink
 from synth.synthesis import verify
 from synth.task import Obstacle, PointTarget, Topology
