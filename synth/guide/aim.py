@@ -151,7 +151,7 @@ def towards(arm: StandingArm, design: Arm) -> FloatArray:
     return np.concatenate([end - arm.end, across * (angle / sine if sine > 1e-12 else 0.0)])
 
 
-def _size(move: FloatArray) -> float:
+def size(move: FloatArray) -> float:
     """Return how large a displacement is, m: a rotation counts with a lever."""
     return float(np.hypot(np.linalg.norm(move[:3]), _LEVER * np.linalg.norm(move[3:])))
 
@@ -167,9 +167,9 @@ def best_aims(
 ) -> list[tuple[float, FloatArray, FloatArray]]:
     """Return aims, the cheapest first: near the present pose, and near each design."""
     starts = [(np.zeros(6), joints)]
-    moves = sorted((towards(arm, design) for design in designs), key=_size)
+    moves = sorted((towards(arm, design) for design in designs), key=size)
     for move in moves[:_MOST_DESIGNS]:
-        if _size(move) < _TOO_FAR:
+        if size(move) < _TOO_FAR:
             starts.append((move, arm.moved(move).closest(targets)))
     found = [aimed(arm, move, start, targets, weights, hand, share) for move, start in starts]
     return sorted(((cost, move, there) for move, there, cost in found), key=lambda aim: aim[0])

@@ -11,16 +11,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import FloatArray, frozen
-from synth.guide.aim import best_aims
+from synth.guide.aim import best_aims, size, towards
 from synth.guide.hand import Hand
 from synth.guide.outlook import Outlook, after_stiffening, outlook
 from synth.guide.trying_on import value_of_trying
+from synth.measurement.standing_arm import onto_vertical
+from synth.robot import link_to_pose
 from synth.sentences import SentenceEnum
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from synth.measurement import ArmFit, StandingArm
+    from synth.robot import LinkShape, Robot
     from synth.synthesis import Design
     from synth.task import Task
 
@@ -46,6 +49,7 @@ class Correction:
         move: Shift, shape (3,), m, and
         rotate: rotation vector about the link's end, shape (3,), rad; in the base frame, joint 1 as measured.
         aim: The arm that should stand there then.
+        shape: A shape of the link that has its end there; None where the aim is a design itself.
         joints: Joint angles for the targets there, shape (n, 2), rad.
         outlook: What to expect once an average hand did it, and the link was stiffened and measured again.
         value: Expected largest miss, over tolerance times the least one, of whoever tries on as long as it is
@@ -55,6 +59,7 @@ class Correction:
     move: FloatArray
     rotate: FloatArray
     aim: StandingArm
+    shape: LinkShape | None
     joints: FloatArray
     outlook: Outlook
     value: float
@@ -165,15 +170,30 @@ def _correction(
 ) -> Correction:
     """Return the correction that is worth most."""
     weights = task.tolerances.min() / task.tolerances
-    # What a correction leaves is corrected by the next one.
-    share = hand.share**corrections
-    aims = best_aims(fit.arm, [design.arm for design in designs], joints, task.positions, weights, hand, share)
-    best: Correction | None = None
-    for _, move, there in aims[:1]:
-        value, first = value_of_trying(
-            fit, move, there, task.positions, task.tolerances, hand, corrections
-        )
-        if best is None or value < best.value:
-            best = Correction(move[:3], move[3:], fit.arm.moved(move), there, first, value)
-    assert best is not None
-    return best
+    targets, arms = task.positions, [design.arm for design in designs]
+    # What a correction leaves is corrected by the next one. Where the link cannot take what is best, a nearer aim.
+    for share in (hand.share**corrections, hand.share, 1.0):
+        _, move, there = best_aims(fit.arm, arms, joints, targets, weights, hand, share)[0]
+        aim = fit.arm.moved(move)
+        shape = link_at(task.robot, aim, arms[0].shape)
+        if shape is not None:
+            break
+    else:
+        move = min((towards(fit.arm, arm) for arm in arms), key=size)
+        aim = fit.arm.moved(move)
+        there, shape = aim.closest(targets), None
+    value, first = value_of_trying(fit, move, there, targets, task.tolerances, hand, corrections)
+    return Correction(move[:3], move[3:], aim, shape, there, first, value)
+
+
+def link_at(robot: Robot, arm: StandingArm, current: LinkShape) -> LinkShape | None:
+    """Return a shape of the link whose end is where an arm's end is, turned about both axes at will, or None.
+
+    Args:
+        robot: The hardware.
+        arm: The arm; from its base the shape starts, along its axis 1.
+        current: A shape nearby.
+    """
+    onto_z = onto_vertical(arm.direction)
+    from_p2 = onto_z @ (arm.end - arm.point) - np.array([0.0, 0.0, robot.d12])
+    return link_to_pose(robot.link, from_p2, onto_z @ arm.axis, current=current)

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from synth.measurement import ArmFit, StandingArm
 
 SAMPLES = 2000
+_SAMPLES_AFTER = 1000  # joints are sought anew for each of these
+_STEPS = 4  # from joint angles a few degrees off
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,12 +104,12 @@ def after(
         seed: Of the errors.
     """
     measured = arms.displaced(fit.errors(len(arms.end), seed))
-    best = measured.following(joints, targets)
+    best = measured.following(joints, targets, _STEPS)
     return Outlook(joints, np.linalg.norm(arms.forward(best) - targets, axis=-1), tolerances)
 
 
 def after_stiffening(
-    fit: ArmFit, joints: FloatArray, targets: FloatArray, tolerances: FloatArray, hand: Hand, count: int = SAMPLES
+    fit: ArmFit, joints: FloatArray, targets: FloatArray, tolerances: FloatArray, hand: Hand, count: int = _SAMPLES_AFTER
 ) -> Outlook:
     """Return what the arm as it stands will bring once the link is stiff and measured again."""
     drift = errors(hand.drift, count, np.random.default_rng(2))

@@ -210,7 +210,7 @@ class StandingArm:
         Returns:
             Angles, shape (n, 2), rad.
         """
-        onto_z = _onto_z(self.direction)
+        onto_z = onto_vertical(self.direction)
         frame = turned((onto_z @ self.frame).T, -self.joint1).T
         centre = turned(onto_z @ (self.centre - self.point), -self.joint1)
         kinematics = Kinematics(frame, centre, np.asarray(self.radius))
@@ -218,7 +218,7 @@ class StandingArm:
         return joints
 
 
-def _onto_z(direction: FloatArray) -> FloatArray:
+def onto_vertical(direction: FloatArray) -> FloatArray:
     """Return the least rotation that brings a direction onto z, shape (3, 3)."""
     across = np.cross(direction, [0.0, 0.0, 1.0])
     sine = float(np.linalg.norm(across))
