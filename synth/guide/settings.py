@@ -20,8 +20,9 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 REACH = 30e-3  # m, either way, unless told
-_STEPS, _ROUNDS = 15, 4
+_STEPS, _ROUNDS = 12, 3
 _SMALL = 1e-5  # m, of the differences
+_ARRIVED = 1e-5  # m
 # A setting of 10 mm must save 0.1 mm of every miss: whatever does nothing stays as it is.
 _EFFORT = 0.01
 
@@ -53,13 +54,13 @@ class Settings:
 
 
 def with_settings(arm: StandingArm, settings: FloatArray) -> StandingArm:
-    """Return an arm with settings, shape (5,), m: base x, y, z, P5 along axis 2, its distance from axis 2."""
+    """Return an arm with settings, shape (..., 5), m: base x, y, z, P5 along axis 2, its distance from axis 2."""
     return replace(
         arm,
-        point=arm.point + settings[:3],
-        end=arm.end + settings[:3],
-        offset=arm.offset + float(settings[3]),
-        radius=arm.radius + float(settings[4]),
+        point=arm.point + settings[..., :3],
+        end=arm.end + settings[..., :3],
+        offset=arm.offset + settings[..., 3],
+        radius=arm.radius + settings[..., 4],
     )
 
 
@@ -110,24 +111,22 @@ def _least_squares(
         there = with_settings(arm, at)
         angles = there.following(start, targets, 4)
         miss = (there.forward(angles) - targets) * weights[:, None]
-        return np.concatenate([miss.ravel(), _EFFORT * at]), angles
+        return np.concatenate([miss.reshape(*at.shape[:-1], -1), _EFFORT * at], axis=-1), angles
 
     free, damping = reach > 0.0, 1e-4
+    steps = np.vstack([np.zeros(5), _SMALL * np.eye(5)[free]])
     for _ in range(_STEPS):
-        now, joints = residuals(values, joints)
-        slope = np.array([residuals(values + _SMALL * e, joints)[0] - now for e in np.eye(5)[free]]) / _SMALL
-        normal, gradient = slope @ slope.T, slope @ now
+        rows, angles = residuals(values + steps, joints)
+        now, joints, slope = rows[0], angles[0], (rows[1:] - rows[0]) / _SMALL
         step = np.zeros(5)
-        step[free] = -np.linalg.solve(normal + damping * np.eye(len(normal)), gradient)
+        step[free] = -np.linalg.solve(slope @ slope.T + damping * np.eye(len(slope)), slope @ now)
         tried = np.clip(values + step, -reach, reach)
         then, angles = residuals(tried, joints)
-        if then @ then < now @ now:
-            arrived = bool(np.abs(tried - values).max() < 1e-6)
-            values, joints, damping = tried, angles, max(0.2 * damping, 1e-8)
-            if arrived:
-                break
-        else:
+        if then @ then >= now @ now:
             damping *= 10.0
-            if damping > 1e3:
-                break
+            continue
+        arrived = bool(np.abs(tried - values).max() < _ARRIVED)
+        values, joints, damping = tried, angles, max(0.2 * damping, 1e-8)
+        if arrived:
+            break
     return values, joints

@@ -58,8 +58,8 @@ class StandingArm:
         end: The link's end, on axis 2, with joint 1 at `joint1`, shape (..., 3).
         frame: Its rotation, shape (..., 3, 3), columns u along axis 2, v = t x u, t along the link.
         joint1: The angle at which joint 1 stood, rad.
-        offset: From the link's end along u to the centre of the circle of P5, m.
-        radius: Radius of that circle, m.
+        offset: From the link's end along u to the centre of the circle of P5, one number or shape (...), m.
+        radius: Radius of that circle, likewise, m.
         limits: Of the joints.
     """
 
@@ -68,8 +68,8 @@ class StandingArm:
     end: FloatArray
     frame: FloatArray
     joint1: float
-    offset: float
-    radius: float
+    offset: float | FloatArray
+    radius: float | FloatArray
     limits: JointLimits
 
     @classmethod
@@ -96,7 +96,7 @@ class StandingArm:
     @property
     def centre(self) -> FloatArray:
         """Centre of the circle of P5, shape (..., 3), m."""
-        return self.end + self.offset * self.axis
+        return self.end + np.asarray(self.offset)[..., None] * self.axis
 
     def displaced(self, by: FloatArray) -> StandingArm:
         """Return this arm displaced in its eleven freedoms.
@@ -146,7 +146,8 @@ class StandingArm:
 
     def _on_circle(self, joints: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return P5 from the circle's centre and its derivative by joint 2, shape (..., n, 3), joint 1 as it stood."""
-        cos, sin = self.radius * np.cos(joints[..., 1, None]), self.radius * np.sin(joints[..., 1, None])
+        radius = np.asarray(self.radius)[..., None, None]
+        cos, sin = radius * np.cos(joints[..., 1, None]), radius * np.sin(joints[..., 1, None])
         v, t = self.frame[..., None, :, 1], self.frame[..., None, :, 2]
         return sin * v - cos * t, cos * v + sin * t
 
