@@ -7,12 +7,14 @@ all of them.
 
     Measurement -> misprint -> nearest points -> samples and their spread -> Inspection
 
-Markers say where both axes are: `fit_arm` finds the arm that stands there, with its covariance.
+Markers say where both axes are: `examine` refuses or mends what cannot be, `fit_arm` finds the
+arm that stands there, with its covariance.
 
-    Readings -> ArmFit
+    Readings -> Examination -> ArmFit
 """
 
 from synth.measurement.arm_fit import ArmFit, fit_arm, marker_positions
+from synth.measurement.examination import Examination, examine
 from synth.measurement.inspection import Inspection, inspect
 from synth.measurement.link_fit import LinkFit, fit_link
 from synth.measurement.markers import MARKER_ERROR, Marker, Place, Readings, marker_named, sigma_of
@@ -24,6 +26,7 @@ from synth.measurement.standing_arm import StandingArm, rotation_matrix
 __all__ = [
     "MARKER_ERROR",
     "ArmFit",
+    "Examination",
     "Fit",
     "Inspection",
     "LinkFit",
@@ -36,6 +39,7 @@ __all__ = [
     "Spread",
     "StandingArm",
     "Suspect",
+    "examine",
     "find_misprint",
     "fit_arm",
     "fit_link",

@@ -18,9 +18,9 @@ from synth.measurement.standing_arm import FREEDOMS, StandingArm
 if TYPE_CHECKING:
     from synth.measurement.markers import Readings
 
-_STEPS = 30
+_STEPS = 20
 _SMALL = 1e-6  # m and rad, of the differences
-_ARRIVED = 1e-9
+_ARRIVED = 1e-7  # m and rad
 # How well a turn of joint 1 shows axis 1: where it passes the base, m, and its direction, rad.
 BASE_SHIFT, BASE_TILT = 0.15e-3, 0.3e-3
 # A base of which only markers tell: so wide that they alone decide.

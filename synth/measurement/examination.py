@@ -12,13 +12,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.measurement.arm_fit import ArmFit, fit_arm
+from synth.measurement.arm_fit import ArmFit, fit_arm, marker_positions
 from synth.measurement.markers import Place, Readings
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from synth.arrays import FloatArray
     from synth.measurement.standing_arm import StandingArm
     from synth.robot import Robot
+
+    _Fitter = Callable[[Readings], ArmFit]
 
 _IMPLAUSIBLE, _PLAUSIBLE = 1e-3, 1e-2
 _MOST_REJECTED = 2
@@ -81,7 +85,7 @@ def examine(
     while fit.plausibility < _IMPLAUSIBLE:
         if refusal := _frame_that_fits(used, fitted) or _swap_that_fits(used, fitted):
             return Examination(None, used, tuple(lost), refusal)
-        culprit = _culprit(used, fitted) if len(lost) < _MOST_REJECTED + readings.at(Place.LINK).size else None
+        culprit = _culprit(used, fitted, robot.tip_offset) if len(lost) < _MOST_REJECTED + readings.at(Place.LINK).size else None
         if culprit is None:
             worst = float(np.linalg.norm(fit.residuals, axis=1).max())
             return Examination(
@@ -161,7 +165,7 @@ def _wrong_base(readings: Readings) -> str:
     return ""
 
 
-def _frame_that_fits(readings: Readings, fitted) -> str:  # type: ignore[no-untyped-def]
+def _frame_that_fits(readings: Readings, fitted: _Fitter) -> str:
     """Return which other frame the readings fit, or nothing."""
     for words, turn in _FRAMES.items():
         other = Readings(readings.markers, readings.positions @ turn.T, readings.joints)
@@ -170,7 +174,7 @@ def _frame_that_fits(readings: Readings, fitted) -> str:  # type: ignore[no-unty
     return ""
 
 
-def _swap_that_fits(readings: Readings, fitted) -> str:  # type: ignore[no-untyped-def]
+def _swap_that_fits(readings: Readings, fitted: _Fitter) -> str:
     """Return which two names must be exchanged for the readings to fit, or nothing."""
     names = dict.fromkeys(readings.names)
     for one, other in combinations(names, 2):
@@ -181,7 +185,7 @@ def _swap_that_fits(readings: Readings, fitted) -> str:  # type: ignore[no-untyp
     return ""
 
 
-def _culprit(readings: Readings, fitted) -> tuple[str, float] | None:  # type: ignore[no-untyped-def]
+def _culprit(readings: Readings, fitted: _Fitter, tip_offset: float) -> tuple[str, float] | None:
     """Return the one marker without which all others agree, and how far off it is, m; None if there are none or two."""
     found = []
     for name in dict.fromkeys(readings.names):
@@ -195,11 +199,10 @@ def _culprit(readings: Readings, fitted) -> tuple[str, float] | None:  # type: i
     if not found or (len(found) > 1 and found[1][0] > 0.1 * found[0][0]):
         return None
     name = found[0][1]
-    from synth.measurement.arm_fit import marker_positions
-
     arm = fitted(readings.without(name)).arm
     off = readings.take([k for k, other in enumerate(readings.names) if other == name])
-    return name, float(np.linalg.norm(marker_positions(arm, off, 0.0) - off.positions, axis=1).max())
+    away = marker_positions(arm, off, tip_offset) - off.positions
+    return name, float(np.linalg.norm(away, axis=1).max())
 
 
 def _frame_nearer(fit: ArmFit, wanted: StandingArm) -> str:
@@ -210,6 +213,8 @@ def _frame_nearer(fit: ArmFit, wanted: StandingArm) -> str:
     def off(turn: FloatArray) -> float:
         return float(np.hypot(np.linalg.norm(turn @ fit.arm.end - end), 0.15 * np.linalg.norm(turn @ fit.arm.axis - axis)))
 
+    if float(fit.arm.axis @ axis) < 0.0 and np.linalg.norm(fit.arm.end - end) < _NEAR:
+        return "axis 2 points the other way than was wanted: P3 and P4 seem to have each other's names"
     if off(np.eye(3)) > _FAR:
         for words, turn in _FRAMES.items():
             if off(turn) < _NEAR:
