@@ -163,3 +163,39 @@ def check(
         settings_within=settings_within / 1000.0,
     )  # fmt: skip
     sys.exit(code)
+
+
+@main.command()
+@click.argument("points", metavar="POINTS", type=click.Path(path_type=Path))
+@click.argument("solution", metavar="SOLUTION", type=click.Path(path_type=Path))
+@click.option("--json", "as_json", is_flag=True, help="Print the calibration as JSON and nothing else.")
+@click.option(
+    "--marker-error", metavar="MM", type=click.FloatRange(0.001, 100.0), default=0.455, show_default=True,
+    help="Mean error of a point in space.",
+)  # fmt: skip
+@click.option(
+    "--surface-rms", metavar="MM", type=click.FloatRange(0.001, 100.0), default=0.3, show_default=True,
+    help="How well the surface must be known, root mean square.",
+)  # fmt: skip
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the starts.")
+def calibrate(
+    points: Path, solution: Path, *, as_json: bool, marker_error: float, surface_rms: float, seed: int
+) -> None:
+    """Find the real arm from points of its end effector, after the link was stiffened.
+
+    POINTS holds x_mm,y_mm,z_mm in the base frame and, if they are known, joint1_deg,joint2_deg; SOLUTION is the
+    solution.json of the task.
+
+    \b
+    Exit codes:
+      0  the surface is known as well as asked
+      1  the points do not determine it, or fit no arm
+      2  wrong input
+    """
+    from synth.cli.calibrate import calibrate_file
+
+    code = calibrate_file(
+        points, solution,
+        as_json=as_json, marker_error=marker_error / 1000.0, surface_rms=surface_rms / 1000.0, seed=seed,
+    )  # fmt: skip
+    sys.exit(code)

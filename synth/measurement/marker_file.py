@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Iterator
 
+    from synth.arrays import FloatArray
     from synth.robot import Robot
 
 _MAX_BYTES = 50_000_000
@@ -60,6 +61,37 @@ def load_readings(path: str | os.PathLike[str], robot: Robot, joint1: float) -> 
     return _readings(rows, robot, joint1, file)
 
 
+def load_points(path: str | os.PathLike[str]) -> tuple[FloatArray, FloatArray | None]:
+    """Read a file of positions of the end effector: the columns of markers but for the marker.
+
+    Args:
+        path: The file.
+
+    Returns:
+        Positions in the base frame, shape (n, 3), m, and joint angles, shape (n, 2), rad, or None if the file has
+        none. Gaps are passed over.
+
+    Raises:
+        InputError: The file cannot be read or is wrong; with its mistakes, up to ten.
+    """
+    file = str(path)
+    text = _text(Path(path), file)
+    is_json = text.lstrip()[:1] == "{"
+    rows = (_json_rows if is_json else _csv_rows)(text, file, named=False)
+    mistakes: list[Mistake] = []
+    table = [list(_numbers(row, number, file, mistakes)) for number, row in rows]
+    seen = [values for values in table if values[0] is not None]
+    angled = [value is not None for values in seen for value in values[3:]]
+    if any(angled) and not all(angled):
+        mistakes.append(Mistake("must have both joint angles in every row, or none", file))
+    if mistakes:
+        raise InputError(mistakes[:_MISTAKES_AT_MOST])
+    if not seen:
+        raise InputError([Mistake("holds no points", file)])
+    array = np.array(seen, dtype=np.float64)
+    return array[:, :3], np.radians(array[:, 3:]) if all(angled) else None
+
+
 def _text(path: Path, file: str) -> str:
     try:
         with path.open("rb") as stream:
@@ -79,7 +111,7 @@ def _text(path: Path, file: str) -> str:
     return text
 
 
-def _json_rows(text: str, file: str) -> list[_Row]:
+def _json_rows(text: str, file: str, *, named: bool = True) -> list[_Row]:
     rows: list[_Row] = []
     for number, line in enumerate(text.splitlines(), 1):
         if not line.strip():
@@ -90,12 +122,12 @@ def _json_rows(text: str, file: str) -> list[_Row]:
             raise InputError([Mistake("is no JSON object on one line", file, number)]) from None
         if not isinstance(row, dict):
             raise InputError([Mistake("must be a JSON object with the keys marker, x_mm, y_mm, z_mm", file, number)])
-        _check_columns(list(row), file, number)
+        _check_columns(list(row), file, number, named=named)
         rows.append((number, row))
     return rows
 
 
-def _csv_rows(text: str, file: str) -> list[_Row]:
+def _csv_rows(text: str, file: str, *, named: bool = True) -> list[_Row]:
     lines = csv.reader(text.splitlines())
     try:
         table = [(lines.line_num, [cell.strip() for cell in cells]) for cells in lines if any(map(str.strip, cells))]
@@ -104,11 +136,12 @@ def _csv_rows(text: str, file: str) -> list[_Row]:
     if not table:
         raise InputError([Mistake("holds no markers", file)])
     first, header = table[0][0], [cell.lower() for cell in table[0][1]]
-    if "marker" not in header:
+    if not any(cell in _COLUMNS for cell in header):
+        example = "marker,x_mm,y_mm,z_mm" if named else "x_mm,y_mm,z_mm"
         raise InputError(
-            [Mistake("must begin with a header such as marker,x_mm,y_mm,z_mm: in which unit are these numbers?", file, first)]
+            [Mistake(f"must begin with a header such as {example}: in which unit are these numbers?", file, first)]
         )
-    _check_columns(header, file, first)
+    _check_columns(header, file, first, named=named)
     mistakes = [
         Mistake(f"has {len(cells)} cells, and the header {len(header)}", file, number)
         for number, cells in table[1:]
@@ -119,7 +152,7 @@ def _csv_rows(text: str, file: str) -> list[_Row]:
     return [(number, dict(zip(header, cells, strict=True))) for number, cells in table[1:]]
 
 
-def _check_columns(names: list[str], file: str, line: int) -> None:
+def _check_columns(names: list[str], file: str, line: int, *, named: bool) -> None:
     mistakes = []
     for name in dict.fromkeys(names):
         if name not in _COLUMNS:
@@ -133,7 +166,7 @@ def _check_columns(names: list[str], file: str, line: int) -> None:
         mistakes.append(Mistake("must have x, y and z in one unit: x_mm,y_mm,z_mm or x_m,y_m,z_m", file, line))
     elif not mistakes and not all(f"{axis}_{units[0]}" in names for axis in "xyz"):
         mistakes.append(Mistake(f"must have all of x_{units[0]}, y_{units[0]} and z_{units[0]}", file, line))
-    if "marker" not in names:
+    if named and "marker" not in names:
         mistakes.append(Mistake("must name the marker", file, line, "marker"))
     if mistakes:
         raise InputError(mistakes)
