@@ -15,7 +15,7 @@ LIBRARIES = {
         "synthesis/nlp/program.py",
     },
     "cvxpy": {"measurement/relaxation.py"},
-    "click": {"cli/inspect.py", "cli/main.py", "cli/solve.py"},
+    "click": {"cli/calibrate.py", "cli/check.py", "cli/inspect.py", "cli/main.py", "cli/solve.py"},
     "rich": {"cli/session.py"},
     "ruamel": {"task/yaml_text.py"},
     "sympy": {"geometry/derivation.py"},

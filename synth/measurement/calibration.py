@@ -142,10 +142,12 @@ def calibrate(
     )
 
 
-def _misses(arm: StandingArm, points: FloatArray, joints: FloatArray | None, near: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _misses(
+    arm: StandingArm, points: FloatArray, joints: FloatArray | None, near: FloatArray, steps: int = 3
+) -> tuple[FloatArray, FloatArray]:
     """Return misses, shape (..., n, 3), m, and the joints there: those given, or the best near some."""
     if joints is None:
-        there = arm.following(near, points, 3)
+        there = arm.following(near, points, steps)
         return arm.forward(there) - points, there
     return arm.forward(np.broadcast_to(joints, (*arm.end.shape[:-1], *joints.shape))) - points, joints
 
@@ -161,8 +163,7 @@ def _fit(
     for _ in range(_STEPS):
         rows, there = _misses(changed(arm, steps), points, joints, near)
         near = there if joints is not None else there[0]
-        miss = rows[0].ravel() / sigma
-        slope = (rows[1 : UNKNOWNS + 1] - rows[UNKNOWNS + 1 :]).reshape(UNKNOWNS, -1) / (2.0 * _SMALL * sigma)
+        miss, slope = rows[0].ravel() / sigma, _slope(rows) / sigma
         information, gradient = slope @ slope.T, slope @ miss
         step = -np.linalg.solve(information + damping * np.eye(UNKNOWNS) / _SMALL, gradient)
         step *= min(1.0, 0.3 / max(float(np.abs(step).max()), 1e-30))
@@ -178,9 +179,16 @@ def _fit(
             damping = 30.0 * max(damping, 1e-12)
             if damping > 1e6:
                 break
-    final, _ = _misses(arm, points, joints, near)
-    lengths = np.linalg.norm(final, axis=-1)
+    rows, _ = _misses(changed(arm, steps), points, joints, near, 8)
+    slope = _slope(rows) / sigma
+    information, lengths = slope @ slope.T, np.linalg.norm(rows[0], axis=-1)
     return replace(arm, limits=limits), information, float(np.sum((lengths / sigma) ** 2)), lengths
+
+
+def _slope(rows: FloatArray) -> FloatArray:
+    """Return the derivative of misses, shape (7, 3 n), from those at the arm and at small changes either way."""
+    ahead, behind = rows[1 : UNKNOWNS + 1], rows[UNKNOWNS + 1 :]
+    return np.asarray((ahead - behind).reshape(UNKNOWNS, -1) / (2.0 * _SMALL))
 
 
 def _surface_rms(arm: StandingArm, covariance: FloatArray) -> float:

@@ -30,7 +30,7 @@ _FACTORS = {"1000 times too large": 1e3, "1000 times too small": 1e-3, "10 times
             "10 times too small": 0.1, "in inches, not millimetres": 1 / 25.4}  # fmt: skip
 _SHORTEST = 0.02  # m; distances below tell nothing of a unit
 _UPRIGHT, _AT_ORIGIN = np.radians(20.0), 0.05
-_FAR, _NEAR = 0.15, 0.06  # m, from the arm that was wanted
+_FAR, _NEAR = 0.07, 0.06  # m, from the arm that was wanted; a hand places a link to some 15 mm
 _FRAMES: dict[str, FloatArray] = {
     "mirrored: x and -x are exchanged": np.diag([-1.0, 1.0, 1.0]),
     "mirrored: y and -y are exchanged": np.diag([1.0, -1.0, 1.0]),
@@ -217,7 +217,7 @@ def _frame_nearer(fit: ArmFit, wanted: StandingArm) -> str:
         return "axis 2 points the other way than was wanted: P3 and P4 seem to have each other's names"
     if off(np.eye(3)) > _FAR:
         for words, turn in _FRAMES.items():
-            if off(turn) < _NEAR:
+            if off(turn) < min(_NEAR, 0.5 * off(np.eye(3))):
                 return f"the frame is {words}: so seen, the arm is {1e3 * off(turn):.0f} mm from where it was wanted"
     return ""
 

@@ -156,7 +156,7 @@ def _check_columns(names: list[str], file: str, line: int, *, named: bool) -> No
     mistakes = []
     for name in dict.fromkeys(names):
         if name not in _COLUMNS:
-            near = difflib.get_close_matches(name, _COLUMNS, 1)
+            near = difflib.get_close_matches(name, _COLUMNS, 1, 0.5)
             hint = f"; did you mean {near[0]}?" if near else f"; there are {', '.join(_COLUMNS)}"
             mistakes.append(Mistake(f"unknown column{hint}", file, line, name[:40]))
         elif names.count(name) > 1:
