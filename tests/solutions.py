@@ -46,7 +46,12 @@ def solution_document(task, designs):
             "topology": task.topology.value,
             "objective": task.objective.value,
             "targets": [
-                {"name": t.name, "position": list(map(float, t.position)), "tolerance": t.tolerance, "weight": t.weight}
+                {
+                    "name": t.name,
+                    "position": list(map(float, t.position)),
+                    "tolerance": t.tolerance,
+                    "weight": t.weight,
+                }
                 for t in task.targets
             ],
             "obstacles": [],

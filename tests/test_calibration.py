@@ -14,7 +14,9 @@ LIMITS = ROBOT.joint_limits
 def sweep(rng, count, share=1.0):
     width = LIMITS.second.upper - LIMITS.second.lower
     lower = rng.uniform(LIMITS.second.lower, LIMITS.second.upper - share * width)
-    first = rng.uniform(LIMITS.base.lower, LIMITS.base.lower + share * (LIMITS.base.upper - LIMITS.base.lower), count)
+    first = rng.uniform(
+        LIMITS.base.lower, LIMITS.base.lower + share * (LIMITS.base.upper - LIMITS.base.lower), count
+    )
     return np.column_stack([first, rng.uniform(lower, lower + share * width, count)])
 
 

@@ -84,7 +84,15 @@ def test_a_link_in_its_place_is_locked(scene):
 def test_the_json_of_a_check_is_the_contract(scene, tmp_path):
     off = wanted(scene).moved(np.array([0.006, -0.005, 0.004, 0.03, 0.02, -0.04]))
     result = run(
-        "check", markers(scene, off), scene[3], "--base-calibrated", "--json", "--settings", 30, "-o", tmp_path
+        "check",
+        markers(scene, off),
+        scene[3],
+        "--base-calibrated",
+        "--json",
+        "--settings",
+        30,
+        "-o",
+        tmp_path,
     )
     assert result.exit_code == 1, result.output
     content = json.loads(result.stdout)
@@ -125,7 +133,10 @@ def test_calibration_from_a_file(scene):
     rng = np.random.default_rng(0)
     limits = ROBOT.joint_limits
     joints = np.column_stack(
-        [rng.uniform(limits.base.lower, limits.base.upper, 100), rng.uniform(limits.second.lower, limits.second.upper, 100)]
+        [
+            rng.uniform(limits.base.lower, limits.base.upper, 100),
+            rng.uniform(limits.second.lower, limits.second.upper, 100),
+        ]
     )
     true = wanted(scene).moved(np.array([0.005, 0.0, 0.003, 0.02, 0.0, 0.01]))
     points = 1e3 * (true.forward(joints) + SIGMA * rng.normal(size=(100, 3)))

@@ -35,7 +35,8 @@ def test_good_markers_are_believed(scene, names):
 
 
 @pytest.mark.parametrize(
-    ("factor", "told"), [(10.0, "10 times too large"), (1e-3, "1000 times too small"), (1 / 25.4, "inches"), (2.0, "2 times")]
+    ("factor", "told"),
+    [(10.0, "10 times too large"), (1e-3, "1000 times too small"), (1 / 25.4, "inches"), (2.0, "2 times")],
 )
 def test_wrong_units_are_refused(scene, factor, told):
     wanted, true, rng = scene
@@ -49,8 +50,8 @@ def test_wrong_units_are_refused(scene, factor, told):
     [
         (np.diag([1.0, -1.0, 1.0]), "mirrored"),
         (np.diag([-1.0, 1.0, 1.0]), "mirrored"),
-        (np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]]), "axis 1 points along y"),
-        (np.diag([1.0, -1.0, -1.0]), "axis 1 points along -z"),
+        (np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]]), "P1 to P2 points along y"),
+        (np.diag([1.0, -1.0, -1.0]), "P1 to P2 points along -z"),
     ],
 )
 def test_other_frames_are_refused(scene, turn, told):

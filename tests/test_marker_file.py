@@ -1,4 +1,4 @@
-"""Markers from files: read, or refused with the reason and its place; never a traceback, never a wrong unit."""
+"""Markers from files: read, or refused with the reason and its place; never a wrong unit."""
 
 import json
 

@@ -13,7 +13,10 @@ LIMITS = ROBOT.joint_limits
 
 def postures(rng, count):
     return np.column_stack(
-        [rng.uniform(LIMITS.base.lower, LIMITS.base.upper, count), rng.uniform(LIMITS.second.lower, LIMITS.second.upper, count)]
+        [
+            rng.uniform(LIMITS.base.lower, LIMITS.base.upper, count),
+            rng.uniform(LIMITS.second.lower, LIMITS.second.upper, count),
+        ]
     )
 
 
@@ -80,5 +83,7 @@ def test_many_arms_at_once_are_each_of_them():
     together = arm.displaced(by)
     for k in range(6):
         alone = arm.displaced(by[k])
-        assert np.allclose(together.forward(np.broadcast_to(joints, (6, 5, 2)))[k], alone.forward(joints), atol=1e-14)
+        assert np.allclose(
+            together.forward(np.broadcast_to(joints, (6, 5, 2)))[k], alone.forward(joints), atol=1e-14
+        )
         assert np.allclose(together.following(joints, points)[k], alone.following(joints, points), atol=1e-9)

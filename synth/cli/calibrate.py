@@ -40,9 +40,7 @@ def calibrate_file(
         task, arms = load_shapes(solution)
         positions, joints = load_points(points)
         wanted = StandingArm.of(arms[0], task.robot.joint_limits.base.middle)
-        found = calibrate(
-            positions, joints, wanted, sigma_of(marker_error), most_rms=surface_rms, seed=seed
-        )
+        found = calibrate(positions, joints, wanted, sigma_of(marker_error), most_rms=surface_rms, seed=seed)
         content = calibration_to_json(found, task)
     except SynthError as error:
         click.echo(str(error), err=True)
@@ -53,12 +51,18 @@ def calibrate_file(
         click.echo(f"{task.name}: {found.refusal}")
     else:
         click.echo(
-            f"{task.name}: the surface is known to {math.ceil(1e5 * found.surface_rms) / 100:.2f} mm root mean square, "
+            f"{task.name}: the surface is known to {math.ceil(1e5 * found.surface_rms) / 100:.2f} mm root "
+            "mean square, "
             f"from {content['points_used']} points"
         )
         for target in content["targets"]:
-            angles = "" if target["joints"] is None else "joint 1 {:.2f} deg, joint 2 {:.2f} deg; ".format(
-                *map(math.degrees, target["joints"])
+            angles = (
+                ""
+                if target["joints"] is None
+                else "joint 1 {:.2f} deg, joint 2 {:.2f} deg; ".format(*map(math.degrees, target["joints"]))
             )
-            click.echo(f"• {target['name']}: {angles}miss below {math.ceil(1e5 * target['miss_95']) / 100:.2f} mm in 19 of 20 cases")
+            click.echo(
+                f"• {target['name']}: {angles}miss below {math.ceil(1e5 * target['miss_95']) / 100:.2f} "
+                "mm in 19 of 20 cases"
+            )
     return ExitCode.NOT_MET if found.refusal else ExitCode.DONE

@@ -69,11 +69,11 @@ def check_file(
             code = ExitCode.WRONG_INPUT
         else:
             fit = examination.fit
-            check = check_arm(
-                task, designs, fit, corrections=corrections, confidence=confidence, stiff=stiff
-            )
+            check = check_arm(task, designs, fit, corrections=corrections, confidence=confidence, stiff=stiff)
             settings = (
-                best_settings(task, task.robot, fit, check.now.joints, base=settings_within, tool=settings_within)
+                best_settings(
+                    task, task.robot, fit, check.now.joints, base=settings_within, tool=settings_within
+                )
                 if settings_within > 0.0
                 else None
             )

@@ -146,7 +146,8 @@ def check(
 ) -> None:
     """Say what to do with the link as it stands: lock it, correct it, or leave it at that.
 
-    MEASURED holds markers in the base frame, marker,x_mm,y_mm,z_mm; SOLUTION is the solution.json of the task.
+    MEASURED holds markers in the base frame, marker,x_mm,y_mm,z_mm; SOLUTION is the solution.json of the
+    task.
 
     \b
     Exit codes:
@@ -183,7 +184,8 @@ def calibrate(
 ) -> None:
     """Find the real arm from points of its end effector, after the link was stiffened.
 
-    POINTS holds x_mm,y_mm,z_mm in the base frame and, if they are known, joint1_deg,joint2_deg; SOLUTION is the
+    POINTS holds x_mm,y_mm,z_mm in the base frame and, if they are known, joint1_deg,joint2_deg; SOLUTION is
+    the
     solution.json of the task.
 
     \b

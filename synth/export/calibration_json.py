@@ -27,8 +27,8 @@ def calibration_to_json(calibration: Calibration, task: Task) -> dict[str, Any]:
         task: What is asked of the arm.
 
     Returns:
-        Dictionaries, lists, strings, numbers and None, for `json.dumps(..., allow_nan=False)`. The angles of joints are
-        None where the sweep had none: their zeros are not known then.
+        Dictionaries, lists, strings, numbers and None, for `json.dumps`. Joint angles are None
+        where the sweep had none: their zeros are not known then.
     """
     arm, robot = calibration.arm, task.robot
     p3 = arm.end - robot.tip_offset * arm.axis

@@ -113,7 +113,12 @@ def _correction(check: Check, correction: Correction) -> dict[str, object]:
         "words": correction_sentence(correction, check.fit),
         "solution": None
         if shape is None
-        else {"arcs": [{"curvature": k, "length": l} for k, l in zip(shape.curvatures, shape.lengths, strict=True)]},
+        else {
+            "arcs": [
+                {"curvature": k, "length": length}
+                for k, length in zip(shape.curvatures, shape.lengths, strict=True)
+            ]
+        },
     }
 
 

@@ -1,14 +1,17 @@
 """Where the link's end should go: the nearest pose that meets the task and forgives the hand.
 
-A pose is a displacement of the link's end, a shift and a rotation vector (6 numbers), from where it is now. Its
+A pose is a displacement of the link's end, a shift and a rotation vector (6 numbers), from where it is. Its
 cost is the mean square of what the targets would miss by, joints at their best, over the errors with which
 a hand gets there:
 
     sum over targets of  |m|^2 + s^2 tr(Q) + r^2 |lever x Q|^2,
 
-m the miss that no joint takes up, Q the directions in which no joint moves P5, s and r the errors of position and
-direction: a floor, and a share of the displacement itself. The share draws the aim towards the present pose, along
-every direction in which the task leaves the shape free; the floor draws it towards shapes whose rigid link points at
+m the miss that no joint takes up, Q the directions in which no joint moves P5, s and r the errors of
+position and
+direction: a floor, and a share of the displacement itself. The share draws the aim towards the present pose,
+    along
+every direction in which the task leaves the shape free; the floor draws it towards shapes whose rigid link
+points at
 the targets along the surface's normal, where a tilt of axis 2 does least.
 """
 
@@ -48,7 +51,7 @@ def _residuals(
     share: float,
     steps: int,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return residuals of the cost, shape (k, r), m, and the joints, shape (k, n, 2), of displacements (k, 6)."""
+    """Return residuals of the cost, (k, r), m, and the joints, (k, n, 2), of displacements (k, 6)."""
     there = arm.moved(moves)
     joints = there.following(joints, targets, steps)
     miss, free, _ = there.left_to_joints(joints, targets)
@@ -169,7 +172,8 @@ def best_aims(
     starts = [(np.zeros(6), joints)]
     moves = sorted((towards(arm, design) for design in designs), key=size)
     for move in moves[:_MOST_DESIGNS]:
-        if size(move) < _TOO_FAR:
-            starts.append((move, arm.moved(move).closest(targets)))
+        if size(move) > _TOO_FAR:
+            break
+        starts.append((move, arm.moved(move).closest(targets)))
     found = [aimed(arm, move, start, targets, weights, hand, share) for move, start in starts]
     return sorted(((cost, move, there) for move, there, cost in found), key=lambda aim: aim[0])

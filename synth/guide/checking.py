@@ -1,6 +1,6 @@
 """The check of a link as it stands: lock it, correct it, or leave it at that.
 
-    Readings -> ArmFit -> Outlook -> Verdict, and the one correction that is worth most
+Readings -> ArmFit -> Outlook -> Verdict, and the one correction that is worth most
 """
 
 from __future__ import annotations
@@ -104,14 +104,13 @@ def best_joints(arm: StandingArm, task: Task, planned: FloatArray) -> FloatArray
     Args:
         arm: The arm.
         task: The task.
-        planned: The joint angles of the design, shape (n, 2), rad. Only they are known to be clear of obstacles
+        planned: The joint angles of the design, shape (n, 2), rad. Only they are known to be clear of
+            obstacles
             and of the arm itself; so another branch is taken only where it is much better.
     """
     near = arm.following(planned, task.positions)
     closest = arm.closest(task.positions)
-    misses = [
-        np.linalg.norm(arm.forward(joints) - task.positions, axis=-1) for joints in (near, closest)
-    ]
+    misses = [np.linalg.norm(arm.forward(joints) - task.positions, axis=-1) for joints in (near, closest)]
     other = misses[1] < misses[0] - (np.inf if task.obstacles else _MUCH_BETTER)
     return np.where(other[:, None], closest, near)
 
@@ -171,7 +170,8 @@ def _correction(
     """Return the correction that is worth most."""
     weights = task.tolerances.min() / task.tolerances
     targets, arms = task.positions, [design.arm for design in designs]
-    # What a correction leaves is corrected by the next one. Where the link cannot take what is best, a nearer aim.
+    # What a correction leaves is corrected by the next one. Where the link cannot take what is best, a
+    # nearer aim.
     for share in (hand.share**corrections, hand.share, 1.0):
         _, move, there = best_aims(fit.arm, arms, joints, targets, weights, hand, share)[0]
         aim = fit.arm.moved(move)

@@ -24,7 +24,7 @@ _SAMPLES = 400
 
 
 def loss_at_floor(task: Task, arm: StandingArm, joints: FloatArray, hand: Hand) -> float:
-    """Return the expected largest miss, over tolerance times the least one, m, if a hand comes to an arm's shape.
+    """Return the expected largest miss, over tolerance times the least one, m, after a hand's best try.
 
     Args:
         task: The task.
@@ -69,8 +69,8 @@ def most_forgiving(task: Task, designs: Sequence[Design], hand: Hand | None = No
         move, there, _ = aimed(arm, np.zeros(6), joints, task.positions, weights, hand, 0.0)
         moved = arm.moved(move)
         candidates.append((loss_at_floor(task, moved, there, hand), None, moved, design))
-    for loss, design, arm, origin in sorted(candidates, key=lambda each: each[0]):
-        checked = design or design_at(task, arm, origin)
+    for loss, planned, arm, origin in sorted(candidates, key=lambda each: each[0]):
+        checked = planned or design_at(task, arm, origin)
         if checked is not None and checked.verification.found:
             return Forgiving(checked, loss)
     best = min((each for each in candidates if each[1] is not None), key=lambda each: each[0])
@@ -92,5 +92,3 @@ def design_at(task: Task, arm: StandingArm, origin: Design) -> Design | None:
         return None
     made = replace(origin.arm, shape=shape)
     return Design(made, verify(task, made))
-
-

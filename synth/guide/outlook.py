@@ -1,4 +1,4 @@
-"""What to expect of an arm that was measured: each target's miss, and the chance that all are within tolerance.
+"""What to expect of an arm that was measured: each miss, and the chance that all are within tolerance.
 
 Everything is by samples of the arms that the measurement leaves open; nothing is linearised.
 """
@@ -109,7 +109,12 @@ def after(
 
 
 def after_stiffening(
-    fit: ArmFit, joints: FloatArray, targets: FloatArray, tolerances: FloatArray, hand: Hand, count: int = _SAMPLES_AFTER
+    fit: ArmFit,
+    joints: FloatArray,
+    targets: FloatArray,
+    tolerances: FloatArray,
+    hand: Hand,
+    count: int = _SAMPLES_AFTER,
 ) -> Outlook:
     """Return what the arm as it stands will bring once the link is stiff and measured again."""
     drift = errors(hand.drift, count, np.random.default_rng(2))

@@ -1,6 +1,7 @@
-"""What to set once the link is stiff: where the base stands, and where P5 is held. Nothing is softened for it.
+"""What to set once the link is stiff: where the base stands, and where P5 is held.
 
-Shims and a slide move the base; two screws move P5 along axis 2 and change its distance from it. Five numbers,
+Shims and a slide move the base; two screws move P5 along axis 2 and change its distance from it. Five
+numbers,
 sought by damped Gauss-Newton steps so that the targets' misses, joints at their best, are least.
 """
 
@@ -54,7 +55,7 @@ class Settings:
 
 
 def with_settings(arm: StandingArm, settings: FloatArray) -> StandingArm:
-    """Return an arm with settings, shape (..., 5), m: base x, y, z, P5 along axis 2, its distance from axis 2."""
+    """Return an arm with settings, (..., 5), m: base x, y, z, P5 along axis 2, its distance from axis 2."""
     return replace(
         arm,
         point=arm.point + settings[..., :3],

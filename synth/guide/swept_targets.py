@@ -25,7 +25,8 @@ class SweptTarget:
         name: Its name.
         tolerance: Largest miss that counts as reached, m.
         joints: The best joint angles (theta1, theta2), rad; None where the sweep does not show their zeros.
-        expected_miss: Its miss on average, m. With unknown zeros that is with joints guided to the least miss.
+        expected_miss: Its miss on average, m. With unknown zeros that is with joints guided to the least
+            miss.
         miss_95: What the miss exceeds once in twenty, m.
         probability_within: Chance that it is within its tolerance.
     """

@@ -28,7 +28,7 @@ def after_correction(
     tolerances: FloatArray,
     hand: Hand,
 ) -> Outlook:
-    """Return what the arm will bring after a correction, carried out with errors, stiffened and measured again.
+    """Return what the arm will bring after a correction with errors, stiffened and measured again.
 
     Args:
         fit: The arm as it stands.

@@ -56,8 +56,8 @@ class ArmFit:
 
     @property
     def plausibility(self) -> float:
-        """Chance that markers with errors as supposed fit no better than these; 1 where nothing can contradict."""
-        from scipy.special import gammaincc  # noqa: PLC0415 - only where it is used
+        """Chance that markers with errors as supposed fit no better; 1 where nothing can contradict."""
+        from scipy.special import gammaincc  # type: ignore[import-untyped]  # noqa: PLC0415
 
         return float(gammaincc(0.5 * self.excess, 0.5 * self.chi_square)) if self.excess > 0 else 1.0
 
@@ -150,9 +150,7 @@ def fit_arm(
     """
     readings = readings.take([k for k, m in enumerate(readings.markers) if m.place is not Place.LINK])
     joint1 = float(readings.joints[0, 0])
-    axis_at = wanted.about_axis_1(
-        np.vstack([wanted.end, wanted.end + wanted.frame.T]), np.full(4, joint1)
-    )
+    axis_at = wanted.about_axis_1(np.vstack([wanted.end, wanted.end + wanted.frame.T]), np.full(4, joint1))
     wanted = replace(wanted, end=axis_at[0], frame=(axis_at[1:] - axis_at[0]).T, joint1=joint1)
     arm = _turned_onto(readings, wanted, tip_offset)
     roll = np.outer(arm.axis, arm.axis)
@@ -177,7 +175,9 @@ def fit_arm(
     covariance = np.linalg.inv(information)
     shown = round(float(np.trace(covariance @ (information - known))))  # freedoms that the markers took up
     chi_square = float(np.sum((residuals / sigma) ** 2))
-    return ArmFit(arm, covariance, residuals, chi_square, residuals.size - shown)
+    return ArmFit(
+        arm, np.asarray(covariance, dtype=np.float64), residuals, chi_square, residuals.size - shown
+    )
 
 
 def _turned_onto(readings: Readings, wanted: StandingArm, tip_offset: float) -> StandingArm:
@@ -192,7 +192,9 @@ def _turned_onto(readings: Readings, wanted: StandingArm, tip_offset: float) -> 
     seen = readings.take(on_end)
     there = marker_positions(wanted, seen, tip_offset)
     # Where the markers are in line the wanted roll counts, by two points of little weight.
-    reference = np.vstack([there, wanted.end + 0.3 * wanted.frame[:, 1], wanted.end - 0.3 * wanted.frame[:, 1]])
+    reference = np.vstack(
+        [there, wanted.end + 0.3 * wanted.frame[:, 1], wanted.end - 0.3 * wanted.frame[:, 1]]
+    )
     weights = np.append(np.ones(len(there)), [1e-4, 1e-4])
     middle = weights[:-2] @ there / len(there)
     shift = seen.positions.mean(axis=0) - middle
@@ -200,6 +202,4 @@ def _turned_onto(readings: Readings, wanted: StandingArm, tip_offset: float) -> 
     a, b = reference - middle, aim - middle - shift
     left, _, right = np.linalg.svd((weights[:, None] * a).T @ b)
     turn = right.T @ np.diag([1.0, 1.0, np.linalg.det(left @ right)]) @ left.T
-    return replace(
-        wanted, end=middle + shift + turn @ (wanted.end - middle), frame=turn @ wanted.frame
-    )
+    return replace(wanted, end=middle + shift + turn @ (wanted.end - middle), frame=turn @ wanted.frame)

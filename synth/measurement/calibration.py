@@ -1,8 +1,10 @@
 """The real arm from positions of its end effector: a sweep after the link was stiffened.
 
-The unknowns are where the circle of P5 is, how axis 2 points, the zero of joint 2 and the circle's radius, seven
-numbers; axis 1 is the z axis of the frame. With the joint angles known each point is worth three numbers. With
-unknown ones it is worth one, its distance from the surface, and only the five invariants of the surface can be
+The unknowns are where the circle of P5 is, how axis 2 points, the zero of joint 2 and the radius, seven
+numbers; axis 1 is the z axis of the frame. With the joint angles known each point is worth three numbers.
+With
+unknown ones it is worth one, its distance from the surface, and only the five invariants of the surface can
+be
 found: the zeros of the joints stay open. Gauss-Newton steps from several starts, derivatives by differences.
 """
 
@@ -45,7 +47,7 @@ class Calibration:
 
     Attributes:
         arm: The arm, in the base frame; with unknown joints the zeros of its joints mean nothing.
-        covariance: Of shift of the circle's centre (3, m), rotation vector about it (3, rad) and radius (m), (7, 7).
+        covariance: Of the circle's centre (3, m), rotation vector about it (3, rad) and radius (m), (7, 7).
         invariants_covariance: Of (a, alpha, z0, h, R), shape (5, 5), m and rad.
         surface_rms: Expected distance of the fitted surface from the true one, root mean square over all that
             joint 2 can reach, m.
@@ -81,7 +83,7 @@ class Calibration:
 
 
 def changed(arm: StandingArm, by: FloatArray) -> StandingArm:
-    """Return an arm with its circle changed, shape (..., 7): centre (m), rotation about it (rad), radius (m)."""
+    """Return an arm with its circle changed, (..., 7): centre (m), rotation about it (rad), radius (m)."""
     turn = rotation_matrix(by[..., 3:6])
     frame = turn @ arm.frame
     centre = arm.centre + by[..., :3]
@@ -109,10 +111,13 @@ def calibrate(
         most_rms: Largest `surface_rms` that is accepted, m.
         seed: Of the starts.
     """
-    from scipy.special import gammaincc  # noqa: PLC0415 - only where it is used
+    from scipy.special import gammaincc  # type: ignore[import-untyped]  # noqa: PLC0415
 
     rng = np.random.default_rng(seed)
-    starts = [wanted, *(changed(wanted, rng.normal(size=UNKNOWNS) * _START_SPREAD) for _ in range(_STARTS - 1))]
+    starts = [
+        wanted,
+        *(changed(wanted, rng.normal(size=UNKNOWNS) * _START_SPREAD) for _ in range(_STARTS - 1)),
+    ]
     used = np.ones(len(points), dtype=bool)
     while True:
         some = None if joints is None else joints[used]
@@ -123,11 +128,15 @@ def calibrate(
             gammaincc(0.5 * max(numbers - (5 if joints is None else UNKNOWNS), 1), 0.5 * chi_square)
         )
         worst = int(np.argmax(misses))
-        if plausibility >= _IMPLAUSIBLE or misses[worst] < _OUTLIER * sigma or (~used).sum() >= _MOST_OUTLIERS * len(points):
+        if (
+            plausibility >= _IMPLAUSIBLE
+            or misses[worst] < _OUTLIER * sigma
+            or (~used).sum() >= _MOST_OUTLIERS * len(points)
+        ):
             break
         used[np.flatnonzero(used)[worst]] = False
         starts = [arm, wanted]
-    covariance = np.linalg.inv(information + np.eye(UNKNOWNS) / _OPEN**2)
+    covariance = np.asarray(np.linalg.inv(information + np.eye(UNKNOWNS) / _OPEN**2), dtype=np.float64)
     rms = _surface_rms(arm, covariance)
     refusal = ""
     if len(points) < _FEWEST:
@@ -136,7 +145,7 @@ def calibrate(
         refusal = _too_little_swept(points, joints, arm, rms, most_rms)
     elif plausibility < _IMPLAUSIBLE:
         off = float(np.sqrt(np.mean(misses**2)))
-        refusal = f"the points fit no arm of this kind: they are {1e3 * off:.2f} mm off the best one, root mean square"
+        refusal = f"the points fit no arm of this kind: they are {1e3 * off:.2f} mm off the best one (RMS)"
     return Calibration(
         arm, covariance, _of_invariants(arm, covariance), rms, plausibility, used, joints is not None, refusal
     )
@@ -155,7 +164,7 @@ def _misses(
 def _fit(
     points: FloatArray, joints: FloatArray | None, arm: StandingArm, sigma: float
 ) -> tuple[StandingArm, FloatArray, float, FloatArray]:
-    """Return the best arm near a start, its information matrix, chi-square, and the misses of the points, m."""
+    """Return the best arm near a start, its information, chi-square, and the misses of the points, m."""
     near = arm.closest(points) if joints is None else joints
     limits, arm = arm.limits, replace(arm, limits=_ANY_TURN)
     steps = np.vstack([np.zeros(UNKNOWNS), _SMALL * np.eye(UNKNOWNS), -_SMALL * np.eye(UNKNOWNS)])
@@ -186,7 +195,7 @@ def _fit(
 
 
 def _slope(rows: FloatArray) -> FloatArray:
-    """Return the derivative of misses, shape (7, 3 n), from those at the arm and at small changes either way."""
+    """Return the derivative of misses, shape (7, 3 n), from those at small changes either way."""
     ahead, behind = rows[1 : UNKNOWNS + 1], rows[UNKNOWNS + 1 :]
     return np.asarray((ahead - behind).reshape(UNKNOWNS, -1) / (2.0 * _SMALL))
 
@@ -195,7 +204,7 @@ def _surface_rms(arm: StandingArm, covariance: FloatArray) -> float:
     """Return the expected distance of the surface from the true one, root mean square by area, m."""
     second = np.linspace(arm.limits.second.lower, arm.limits.second.upper, _SECONDS)
     joints = np.stack([np.full(_SECONDS, arm.joint1), second], axis=-1)
-    points, velocities = arm.velocities(joints)
+    _, velocities = arm.velocities(joints)
     normal = np.cross(velocities[..., 0], velocities[..., 1])
     area = np.linalg.norm(normal, axis=-1)
     normal /= np.maximum(area, 1e-12)[:, None]
@@ -228,7 +237,8 @@ def _too_little_swept(
     angles = arm.closest(points)[:, 1] if joints is None else joints[:, 1]
     seen, whole = float(np.ptp(angles)), arm.limits.second.upper - arm.limits.second.lower
     return (
-        f"the sweep does not determine the surface: it would be off by {1e3 * rms:.2f} mm root mean square, and {1e3 * most_rms:.2f} mm "
-        f"is asked. Joint 2 moved over {np.degrees(seen):.0f} of its {np.degrees(whole):.0f} deg: move it over the whole range"
-        + ("" if joints is not None else ", or give the joint angles")
+        f"the sweep does not determine the surface: it would be off by {1e3 * rms:.2f} mm root mean "
+        f"square, and {1e3 * most_rms:.2f} mm "
+        f"is asked. Joint 2 moved over {np.degrees(seen):.0f} of its {np.degrees(whole):.0f} deg: move it "
+        "over the whole range" + ("" if joints is not None else ", or give the joint angles")
     )

@@ -1,6 +1,7 @@
-"""Are the markers to be believed? Wrong units, frames and names are refused with the reason, bad markers left out.
+"""Are the markers to be believed? Wrong units, frames and names are refused, bad markers left out.
 
-What is known of any arm decides: distances on its axes and to P5, that axis 1 is the z axis of its base, the sense in
+What is known of any arm decides: distances on its axes and to P5, that axis 1 is the z axis of its base, the
+sense in
 which joints turn. Where a mirrored or turned frame leaves all that as it is, the arm that was wanted decides.
 """
 
@@ -74,7 +75,11 @@ def examine(
     lost = [(name, "it is on the link and says nothing of the axes")
             for name in dict.fromkeys(readings.names[k] for k in readings.at(Place.LINK))]  # fmt: skip
     used = readings.take([k for k, marker in enumerate(readings.markers) if marker.place is not Place.LINK])
-    refusal = _missing(used, base_calibrated=base_calibrated) or _wrong_scale(used, wanted, robot) or _wrong_base(used)
+    refusal = (
+        _missing(used, base_calibrated=base_calibrated)
+        or _wrong_scale(used, wanted, robot)
+        or _wrong_base(used)
+    )
     if refusal:
         return Examination(None, used, tuple(lost), refusal)
 
@@ -85,12 +90,17 @@ def examine(
     while fit.plausibility < _IMPLAUSIBLE:
         if refusal := _frame_that_fits(used, fitted) or _swap_that_fits(used, fitted):
             return Examination(None, used, tuple(lost), refusal)
-        culprit = _culprit(used, fitted, robot.tip_offset) if len(lost) < _MOST_REJECTED + readings.at(Place.LINK).size else None
+        culprit = (
+            _culprit(used, fitted, robot.tip_offset)
+            if len(lost) < _MOST_REJECTED + readings.at(Place.LINK).size
+            else None
+        )
         if culprit is None:
             worst = float(np.linalg.norm(fit.residuals, axis=1).max())
             return Examination(
                 None, used, tuple(lost),
-                f"the markers contradict each other by up to {1e3 * worst:.1f} mm, and which of them is wrong cannot be told",
+                f"the markers contradict each other by up to {1e3 * worst:.1f} mm, and which of them is "
+                "wrong cannot be told",
             )  # fmt: skip
         name, off = culprit
         lost.append((name, f"it is {1e3 * off:.1f} mm from where the other markers say that it must be"))
@@ -104,12 +114,15 @@ def examine(
 def _missing(readings: Readings, *, base_calibrated: bool) -> str:
     on_axis_2 = {readings.offsets[k] for k in readings.at(Place.AXIS_2)}
     if len(on_axis_2) < 2:
-        return "axis 2 is not shown: two markers on it are needed, P3 and P4 or a bar such as A2:-150 and A2:150"
+        return (
+            "axis 2 is not shown: two markers on it are needed, P3 and P4 or a bar such as A2:-150 and A2:150"
+        )
     on_axis_1 = {readings.offsets[k] for k in readings.at(Place.AXIS_1)}
     turned = np.ptp(readings.joints[:, 0]) > np.radians(30.0)
     if len(on_axis_1) < 2 and not base_calibrated and not turned:
         return (
-            "axis 1 is not shown: P1 and P2 are needed, or a turn of joint 1, or the word that the frame was found by "
+            "axis 1 is not shown: P1 and P2 are needed, or a turn of joint 1, or the word that the frame "
+            "was found by "
             "turning joint 1 (--base-calibrated)"
         )
     return ""
@@ -139,7 +152,10 @@ def _wrong_scale(readings: Readings, wanted: StandingArm, robot: Robot) -> str:
     for words, factor in _FACTORS.items():
         if 0.8 < ratio / factor < 1.25:
             return f"the unit is wrong: distances between the markers are {words}"
-    return f"distances between the markers are {ratio:.3g} times what the hardware has: is the unit or are the names wrong?"
+    return (
+        f"distances between the markers are {ratio:.3g} times what the hardware has: "
+        "is the unit wrong, or are the names?"
+    )
 
 
 def _wrong_base(readings: Readings) -> str:
@@ -159,7 +175,7 @@ def _wrong_base(readings: Readings) -> str:
             tilt = np.degrees(np.arccos(up[2]))
             return f"this is not the base frame: from P1 to P2 axis 1 leans {tilt:.0f} deg off z"
         hint = " or P1 and P2 have each other's names" if (sign, along) == ("-", "z") else ""
-        return f"this is not the base frame, whose z points up: from P1 to P2 axis 1 points along {sign}{along}{hint}"
+        return f"this is not the base frame, whose z is up: P1 to P2 points along {sign}{along}{hint}"
     if np.linalg.norm(p1) > _AT_ORIGIN:
         return f"this is not the base frame, whose origin is P1: P1 is at {_mm(p1)}"
     return ""
@@ -186,7 +202,7 @@ def _swap_that_fits(readings: Readings, fitted: _Fitter) -> str:
 
 
 def _culprit(readings: Readings, fitted: _Fitter, tip_offset: float) -> tuple[str, float] | None:
-    """Return the one marker without which all others agree, and how far off it is, m; None if there are none or two."""
+    """Return the one marker without which all others agree, and how far off it is, m; or None."""
     found = []
     for name in dict.fromkeys(readings.names):
         rest = readings.without(name)
@@ -211,14 +227,19 @@ def _frame_nearer(fit: ArmFit, wanted: StandingArm) -> str:
     end, axis = turn[0], turn[1] - turn[0]
 
     def off(turn: FloatArray) -> float:
-        return float(np.hypot(np.linalg.norm(turn @ fit.arm.end - end), 0.15 * np.linalg.norm(turn @ fit.arm.axis - axis)))
+        return float(
+            np.hypot(
+                np.linalg.norm(turn @ fit.arm.end - end), 0.15 * np.linalg.norm(turn @ fit.arm.axis - axis)
+            )
+        )
 
     if float(fit.arm.axis @ axis) < 0.0 and np.linalg.norm(fit.arm.end - end) < _NEAR:
         return "axis 2 points the other way than was wanted: P3 and P4 seem to have each other's names"
     if off(np.eye(3)) > _FAR:
         for words, turn in _FRAMES.items():
             if off(turn) < min(_NEAR, 0.5 * off(np.eye(3))):
-                return f"the frame is {words}: so seen, the arm is {1e3 * off(turn):.0f} mm from where it was wanted"
+                near = f"{1e3 * off(turn):.0f} mm"
+                return f"the frame is {words}: so seen, the arm is {near} from where it was wanted"
     return ""
 
 

@@ -33,6 +33,7 @@ _FARTHEST = 100.0  # m; a coordinate beyond this is no measurement of this robot
 _UNITS = {"mm": 1000.0, "m": 1.0}  # to divide by
 _OTHERS = ("joint1_deg", "joint2_deg", "frame")
 _COLUMNS = ("marker", *(f"{axis}_{unit}" for unit in _UNITS for axis in "xyz"), *_OTHERS)
+_NAMES = "there are P1 to P5, A1:150 and A2:-50.5 on the axes, E:-60 at the link's end, L050 on the link (mm)"
 _SAME_POSTURE = math.radians(0.5)
 _STRAIGHT = math.pi  # joint 2 where nothing is said of it
 _SPREAD = 2e-3  # m; a marker that moves by more while it is measured was not at rest
@@ -68,7 +69,8 @@ def load_points(path: str | os.PathLike[str]) -> tuple[FloatArray, FloatArray | 
         path: The file.
 
     Returns:
-        Positions in the base frame, shape (n, 3), m, and joint angles, shape (n, 2), rad, or None if the file has
+        Positions in the base frame, shape (n, 3), m, and joint angles, shape (n, 2), rad, or None if the
+        file has
         none. Gaps are passed over.
 
     Raises:
@@ -99,7 +101,9 @@ def _text(path: Path, file: str) -> str:
     except FileNotFoundError:
         raise InputError([Mistake("there is no such file", file)]) from None
     except (OSError, ValueError) as error:
-        raise InputError([Mistake(f"cannot be read: {getattr(error, 'strerror', None) or error}", file)]) from None
+        raise InputError(
+            [Mistake(f"cannot be read: {getattr(error, 'strerror', None) or error}", file)]
+        ) from None
     if len(content) > _MAX_BYTES:
         raise InputError([Mistake(f"is larger than {_MAX_BYTES // 1_000_000} MB", file)])
     try:
@@ -121,7 +125,9 @@ def _json_rows(text: str, file: str, *, named: bool = True) -> list[_Row]:
         except (ValueError, RecursionError):
             raise InputError([Mistake("is no JSON object on one line", file, number)]) from None
         if not isinstance(row, dict):
-            raise InputError([Mistake("must be a JSON object with the keys marker, x_mm, y_mm, z_mm", file, number)])
+            raise InputError(
+                [Mistake("must be a JSON object with the keys marker, x_mm, y_mm, z_mm", file, number)]
+            )
         _check_columns(list(row), file, number, named=named)
         rows.append((number, row))
     return rows
@@ -130,7 +136,11 @@ def _json_rows(text: str, file: str, *, named: bool = True) -> list[_Row]:
 def _csv_rows(text: str, file: str, *, named: bool = True) -> list[_Row]:
     lines = csv.reader(text.splitlines())
     try:
-        table = [(lines.line_num, [cell.strip() for cell in cells]) for cells in lines if any(map(str.strip, cells))]
+        table = [
+            (lines.line_num, [cell.strip() for cell in cells])
+            for cells in lines
+            if any(map(str.strip, cells))
+        ]
     except csv.Error as error:
         raise InputError([Mistake(f"is no CSV: {error}", file, lines.line_num)]) from None
     if not table:
@@ -139,7 +149,13 @@ def _csv_rows(text: str, file: str, *, named: bool = True) -> list[_Row]:
     if not any(cell in _COLUMNS for cell in header):
         example = "marker,x_mm,y_mm,z_mm" if named else "x_mm,y_mm,z_mm"
         raise InputError(
-            [Mistake(f"must begin with a header such as {example}: in which unit are these numbers?", file, first)]
+            [
+                Mistake(
+                    f"must begin with a header such as {example}: in which unit are these numbers?",
+                    file,
+                    first,
+                )
+            ]
         )
     _check_columns(header, file, first, named=named)
     mistakes = [
@@ -163,7 +179,9 @@ def _check_columns(names: list[str], file: str, line: int, *, named: bool) -> No
             mistakes.append(Mistake("is there twice", file, line, name))
     units = [unit for unit in _UNITS if any(f"{axis}_{unit}" in names for axis in "xyz")]
     if not mistakes and len(units) != 1:
-        mistakes.append(Mistake("must have x, y and z in one unit: x_mm,y_mm,z_mm or x_m,y_m,z_m", file, line))
+        mistakes.append(
+            Mistake("must have x, y and z in one unit: x_mm,y_mm,z_mm or x_m,y_m,z_m", file, line)
+        )
     elif not mistakes and not all(f"{axis}_{units[0]}" in names for axis in "xyz"):
         mistakes.append(Mistake(f"must have all of x_{units[0]}, y_{units[0]} and z_{units[0]}", file, line))
     if named and "marker" not in names:
@@ -180,21 +198,17 @@ def _readings(rows: list[_Row], robot: Robot, joint1: float, file: str) -> Readi
     for number, row in rows:
         marker = marker_named(str(row["marker"]), robot)
         if marker is None:
-            mistakes.append(
-                Mistake(
-                    f"there is no marker {str(row['marker'])[:20]!r}: P1 to P5, A1:150 and A2:-50.5 on the axes, E:-60 at the "
-                    "link's end, L050 on the link (mm)", file, number, "marker",
-                )  # fmt: skip
-            )
+            shown = repr(str(row["marker"])[:20])
+            mistakes.append(Mistake(f"there is no marker {shown}; {_NAMES}", file, number, "marker"))
             continue
         values = [*_numbers(row, number, file, mistakes)]
         if values[0] is None:  # a gap
             continue
-        angles = [default if value is None else math.radians(value)
-                  for value, default in zip(values[3:], (joint1, _STRAIGHT), strict=True)]  # fmt: skip
+        first = joint1 if values[3] is None else math.radians(values[3])
+        second = _STRAIGHT if values[4] is None else math.radians(values[4])
         markers[marker.name] = marker
-        key = (marker.name, *(round(angle / _SAME_POSTURE) for angle in angles))
-        seen.setdefault(key, []).append([*(float(v or 0.0) for v in values[:3]), *angles])
+        key = (marker.name, round(first / _SAME_POSTURE), round(second / _SAME_POSTURE))
+        seen.setdefault(key, []).append([*(float(v or 0.0) for v in values[:3]), first, second])
     if mistakes:
         more = [Mistake("has more such lines", file)] if len(mistakes) > _MISTAKES_AT_MOST else []
         raise InputError([*mistakes[:_MISTAKES_AT_MOST], *more])
@@ -217,7 +231,9 @@ def _readings(rows: list[_Row], robot: Robot, joint1: float, file: str) -> Readi
     return Readings(tuple(kept), table[:, :3], table[:, 3:], tuple(warnings))
 
 
-def _numbers(row: dict[str, object], number: int, file: str, mistakes: list[Mistake]) -> Iterator[float | None]:
+def _numbers(
+    row: dict[str, object], number: int, file: str, mistakes: list[Mistake]
+) -> Iterator[float | None]:
     """Yield x, y, z, m, and both angles, deg; None for what is not there; mistakes are noted."""
     unit = next(unit for unit in _UNITS if f"x_{unit}" in row)
     cells = [row[f"{axis}_{unit}"] for axis in "xyz"]
@@ -228,8 +244,19 @@ def _numbers(row: dict[str, object], number: int, file: str, mistakes: list[Mist
             continue
         value = _number(cell)
         if value is None or abs(value) / _UNITS[unit] > _FARTHEST:
-            what = "must be a number" if value is None else f"is farther than {_FARTHEST:.0f} m: which unit is it in?"
-            mistakes.append(Mistake(f"{what}, but is {str(cell)[:30]!r}" if value is None else what, file, number, f"{axis}_{unit}"))
+            what = (
+                "must be a number"
+                if value is None
+                else f"is farther than {_FARTHEST:.0f} m: which unit is it in?"
+            )
+            mistakes.append(
+                Mistake(
+                    f"{what}, but is {str(cell)[:30]!r}" if value is None else what,
+                    file,
+                    number,
+                    f"{axis}_{unit}",
+                )
+            )
             yield 0.0
         else:
             yield value / _UNITS[unit]
@@ -237,12 +264,18 @@ def _numbers(row: dict[str, object], number: int, file: str, mistakes: list[Mist
         cell = row.get(name)
         value = _number(cell)
         if not _is_gap(cell) and (value is None or abs(value) > 720.0):
-            mistakes.append(Mistake(f"must be an angle in degrees, but is {str(cell)[:30]!r}", file, number, name))
+            mistakes.append(
+                Mistake(f"must be an angle in degrees, but is {str(cell)[:30]!r}", file, number, name)
+            )
         yield None if value is None or abs(value) > 720.0 else value
 
 
 def _is_gap(cell: object) -> bool:
-    return cell is None or (isinstance(cell, str) and cell.strip().lower() in {"", "nan", "null"}) or cell != cell
+    return (
+        cell is None
+        or (isinstance(cell, str) and cell.strip().lower() in {"", "nan", "null"})
+        or (isinstance(cell, float) and math.isnan(cell))
+    )
 
 
 def _number(cell: object) -> float | None:

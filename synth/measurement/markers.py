@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from synth.robot import Robot
 
 MARKER_ERROR = 0.455e-3  # m, mean 3D error of a marker that a camera system sees
-# The length of a vector whose three components are normal with standard deviation 1 is sqrt(8 / pi) in the mean.
+# The length of a vector whose three components are normal with standard deviation 1 is sqrt(8 / pi) in the
+# mean.
 _MEAN_LENGTH = float(np.sqrt(8.0 / np.pi))
 _NUMBER = r"[+-]?\d+(?:\.\d*)?"
 _OFFSET = re.compile(rf"(A1|A2|E):({_NUMBER})")

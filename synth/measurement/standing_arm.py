@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray
 from synth.robot import Kinematics, turned
 from synth.robot.closest import closest_joints
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from synth.arrays import FloatArray
     from synth.robot import Arm, JointLimits
 
 FREEDOMS = 11  # of `StandingArm.displaced`
@@ -29,7 +29,7 @@ _DAMPING = 1e-7  # m^2; keeps folded and stretched postures, where P5 cannot mov
 
 
 def cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return the cross products of vectors, shape (..., 3); three times as fast as numpy's for few of them."""
+    """Return the cross products of vectors, shape (..., 3); faster than numpy's for few of them."""
     ax, ay, az, bx, by, bz = (c[..., k] for c in (a, b) for k in range(3))
     return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
 
@@ -43,9 +43,7 @@ def rotation_matrix(vector: FloatArray) -> FloatArray:
     cross = np.zeros((*angle.shape, 3, 3))
     cross[..., 0, 1], cross[..., 0, 2], cross[..., 1, 2] = -z, y, -x
     cross[..., 1, 0], cross[..., 2, 0], cross[..., 2, 1] = z, -y, x
-    return np.asarray(
-        np.eye(3) + sine[..., None, None] * cross + versine[..., None, None] * (cross @ cross)
-    )
+    return np.asarray(np.eye(3) + sine[..., None, None] * cross + versine[..., None, None] * (cross @ cross))
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +101,7 @@ class StandingArm:
 
         Args:
             by: Shape (..., 11): shift of P1 (3, m), tilt of axis 1 about x and y (2, rad), shift of the
-                link's end (3, m), and its rotation vector about itself (3, rad); in the frame of the measurement.
+                link's end (3, m), and its rotation vector (3, rad); in the frame of the measurement.
         """
         tilt = np.concatenate([by[..., 3:5], np.zeros_like(by[..., :1])], axis=-1)
         direction = np.einsum("...ij,...j->...i", rotation_matrix(tilt), self.direction)
@@ -125,7 +123,7 @@ class StandingArm:
         return np.asarray(base + self.turned_about_axis_1(points - base, joint1 - self.joint1))
 
     def turned_about_axis_1(self, vectors: FloatArray, angle: FloatArray) -> FloatArray:
-        """Return vectors, shape (..., n, 3), turned about the direction of axis 1 by angles, (..., n), rad."""
+        """Return vectors, shape (..., n, 3), turned about axis 1 by angles, shape (..., n), rad."""
         axis = self.direction[..., None, :]
         cos, sin = np.cos(angle)[..., None], np.sin(angle)[..., None]
         along = np.einsum("...i,...i", vectors, axis)[..., None]
@@ -136,7 +134,7 @@ class StandingArm:
         return self.about_axis_1(self.centre[..., None, :] + self._on_circle(joints)[0], joints[..., 0])
 
     def velocities(self, joints: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return P5, shape (..., n, 3), m, and its derivatives by both joints, shape (..., n, 3, 2), m/rad."""
+        """Return P5, shape (..., n, 3), m, and its derivatives by both joints, (..., n, 3, 2), m/rad."""
         radial, tangent = self._on_circle(joints)
         angle = joints[..., 0] - self.joint1
         from_base = self.turned_about_axis_1((self.centre - self.point)[..., None, :] + radial, angle)
@@ -145,7 +143,7 @@ class StandingArm:
         return self.point[..., None, :] + from_base, np.stack([by_first, by_second], axis=-1)
 
     def _on_circle(self, joints: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return P5 from the circle's centre and its derivative by joint 2, shape (..., n, 3), joint 1 as it stood."""
+        """Return P5 from the circle's centre and its derivative by joint 2, (..., n, 3), joint 1 at rest."""
         radius = np.asarray(self.radius)[..., None, None]
         cos, sin = radius * np.cos(joints[..., 1, None]), radius * np.sin(joints[..., 1, None])
         v, t = self.frame[..., None, :, 1], self.frame[..., None, :, 2]
@@ -154,14 +152,14 @@ class StandingArm:
     def left_to_joints(
         self, joints: FloatArray, targets: FloatArray
     ) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
-        """Return misses, the velocities that joints within their limits can lessen them by, and which are held.
+        """Return misses, the velocities by which joints can lessen them, and which joints are held.
 
         Args:
             joints: Shape (..., n, 2), rad.
             targets: Shape (n, 3), m.
 
         Returns:
-            Misses, shape (..., n, 3), m; velocities, shape (..., n, 3, 2), m/rad, zero for a joint that a limit
+            Misses, shape (..., n, 3), m; velocities, (..., n, 3, 2), m/rad, zero for a joint that a limit
             holds; whether it does, shape (..., n, 2).
         """
         reached, velocities = self.velocities(joints)

@@ -173,7 +173,8 @@ def load_shapes(path: str | os.PathLike[str]) -> tuple[Task, tuple[Arm, ...]]:
     if schema != SCHEMA:
         old = isinstance(schema, str) and schema.startswith("synth.solution/")
         why = (
-            f"is of the schema {schema}, and {SCHEMA} is needed, which holds the whole task: solve the task again"
+            f"is of the schema {schema}, and {SCHEMA} is needed, which holds the whole task: solve the "
+            "task again"
             if old
             else "is no solution of synth: it names no schema synth.solution/2"
         )
@@ -183,7 +184,8 @@ def load_shapes(path: str | os.PathLike[str]) -> tuple[Task, tuple[Arm, ...]]:
         main = None if read.link is None else _Shape(link=read.link, distances=read.distances or {})
     except ValidationError as error:
         mistakes = [
-            Mistake(str(each["msg"]), file, None, key_text(each["loc"])) for each in error.errors()[:_MISTAKES_AT_MOST]
+            Mistake(str(each["msg"]), file, None, key_text(each["loc"]))
+            for each in error.errors()[:_MISTAKES_AT_MOST]
         ]
         raise InputError(mistakes) from None
     if main is None:
@@ -239,12 +241,15 @@ def _task(read: _Task) -> Task:
 
 
 def _obstacle(read: _Obstacle) -> Obstacle:
+    if read.capsule is not None:
+        ends = np.array([read.capsule.start, read.capsule.end])
+        return Obstacle(read.name, Capsule(ends, read.capsule.radius))
     if read.sphere is not None:
         return Obstacle(read.name, Capsule.sphere(read.sphere.center, read.sphere.radius))
-    if read.box is not None:
-        return Obstacle(read.name, Box(np.array(read.box.center), np.array(read.box.size), read.box.yaw))
-    assert read.capsule is not None  # by the model
-    return Obstacle(read.name, Capsule(np.array([read.capsule.start, read.capsule.end]), read.capsule.radius))
+    box = read.box
+    if box is None:  # the model allows no such obstacle
+        raise TypeError(read)
+    return Obstacle(read.name, Box(np.array(box.center), np.array(box.size), box.yaw))
 
 
 def _arm(task: Task, shape: _Shape) -> Arm:

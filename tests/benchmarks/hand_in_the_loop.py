@@ -1,26 +1,29 @@
 """The simulated operator: what a hand, a camera and a guide make of a task.
 
-    python tests/benchmarks/hand_in_the_loop.py [--tasks 24] [--operators 25] [--targets 3,4,5,6] [--markers bars]
+    python tests/benchmarks/hand_in_the_loop.py [--tasks 24] [--operators 25] [--targets 3,4,5,6] [...]
 
-A hand places the link's end 9.64 +- 2.06 mm and 4 +- 1.2 deg off; carries a correction out with an error of 30 to
-50 % of itself, its own share for each operator, and a floor of 2.5 mm and 0.85 deg; the link moves by 1.5 mm and
-0.3 deg as it stiffens; a camera sees each marker with a mean error of 0.455 mm. At most three corrections.
+A hand places the link's end 9.64 +- 2.06 mm and 4 +- 1.2 deg off. It carries a correction out with an error of
+30 to 50 % of itself, each operator with a share of its own, and a floor of 2.5 mm and 0.85 deg. The link moves
+by 1.5 mm and 0.3 deg as it stiffens. A camera sees each marker with a mean error of 0.455 mm. At most three
+corrections.
+
 Guides, each with the same operators:
 
     a       placed once, joint angles for the arm measured
     b       three corrections towards where the markers should be, joint angles for the arm measured
     first   `check` as it is, from the first shape of the solution
     ours    `check` as it is, from the most forgiving shape
-    set     the same; then base and tool are set by what was measured, within 30 mm, with errors of 0.2 mm each
+    set     the same; then base and tool are set by what was measured, within 30 mm, with errors of 0.2 mm
+    each
 
-The truth is never told to a guide: it sees markers. What counts is the largest miss of all targets on the true arm, after
+The truth is never told to a guide: it sees markers. What counts is the largest miss of all targets on the
+true arm, after
 stiffening, with the joint angles for what was measured then.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 import time
 from concurrent.futures import ProcessPoolExecutor
@@ -36,7 +39,15 @@ from planted import ROBOT, planted_task
 from synth.guide.checking import Verdict, best_joints, check_arm
 from synth.guide.forgiving import most_forgiving
 from synth.guide.settings import best_settings, with_settings
-from synth.measurement import MARKER_ERROR, Readings, StandingArm, fit_arm, marker_named, marker_positions, sigma_of
+from synth.measurement import (
+    MARKER_ERROR,
+    Readings,
+    StandingArm,
+    fit_arm,
+    marker_named,
+    marker_positions,
+    sigma_of,
+)
 from synth.synthesis import solve
 
 TOLERANCE = 5e-3
@@ -114,7 +125,8 @@ def trial(guide, task, designs, operator, markers, calibrated, corrections):
     arm = operator.placed(wanted)
     made, locked, told = 0, False, 0.0
     if guide == "b":
-        for made in range(1, corrections + 1):
+        for _ in range(corrections):
+            made += 1
             seen = operator.measured(arm, wanted, markers, calibrated).arm
             arm = operator.corrected(arm, pose_move(seen, wanted))
     elif guide != "a":
@@ -177,7 +189,8 @@ def line(name, trials):
     told = np.mean([t.promised for t in locked]) if locked else 0.0
     return (
         f"{name:<22} median {np.median(worst):5.2f}  95 % {np.quantile(worst, 0.95):6.2f}  within "
-        f"{np.mean(worst <= 1e3 * TOLERANCE):4.0%}  corrections {np.mean([t.corrections for t in trials]):.2f}  "
+        f"{np.mean(worst <= 1e3 * TOLERANCE):4.0%}  corrections "
+        f"{np.mean([t.corrections for t in trials]):.2f}  "
         f"locked {len(locked)}, of these false {false}, told {told:.3f}"
     )
 
@@ -198,15 +211,29 @@ def main() -> None:
     guides = arguments.guides.split(",")
     counts = [int(word) for word in arguments.targets.split(",")]
     work = [
-        (arguments.first_seed + k, counts[k % len(counts)], arguments.operators, arguments.markers, arguments.corrections, guides)
+        (
+            arguments.first_seed + k,
+            counts[k % len(counts)],
+            arguments.operators,
+            arguments.markers,
+            arguments.corrections,
+            guides,
+        )
         for k in range(arguments.tasks)
     ]
     with ProcessPoolExecutor(arguments.processes) as pool:
         results = []
         for result in pool.map(of_task, work):
             results.append(result)
-            so_far = {guide: [t for _, trials, _ in results for t in trials.get(guide, [])] for guide in guides}
-            print(f"{len(results)} tasks", *(line(g, t) for g, t in so_far.items() if t), sep="\n", file=sys.stderr)
+            so_far = {
+                guide: [t for _, trials, _ in results for t in trials.get(guide, [])] for guide in guides
+            }
+            print(
+                f"{len(results)} tasks",
+                *(line(g, t) for g, t in so_far.items() if t),
+                sep="\n",
+                file=sys.stderr,
+            )
     for count in [*sorted(set(counts)), 0] if len(counts) > 1 else [0]:
         some = [trials for number, trials, _ in results if trials and count in (0, number)]
         if not some:
@@ -216,7 +243,12 @@ def main() -> None:
             of_guide = [t for trials in some for t in trials[guide]]
             print("  " + line(guide, of_guide))
             if guide in {"first", "ours"}:
-                print("  " + line(f"{guide}, then set", [replace(t, worst=t.set_worst, locked=False) for t in of_guide]))
+                print(
+                    "  "
+                    + line(
+                        f"{guide}, then set", [replace(t, worst=t.set_worst, locked=False) for t in of_guide]
+                    )
+                )
     print(f"{sum(seconds for *_, seconds in results):.0f} s of trials")
 
 
