@@ -4,8 +4,8 @@
 
 A hand places the link's end 9.64 +- 2.06 mm and 4 +- 1.2 deg off. It carries a correction out with an error
 of 30 to 50 % of itself, each operator with a share of its own, and a floor of 2.5 mm and 0.85 deg. The link
-moves by 1.5 mm and 0.3 deg as it stiffens. A camera sees each marker with a mean error of 0.455 mm. At most three
-corrections.
+moves by 1.5 mm and 0.3 deg as it stiffens. A camera sees each marker with a mean error of 0.455 mm. There are
+three corrections at most.
 
 Guides, each with the same operators:
 
