@@ -1,0 +1,86 @@
+"""`synth check`: the link as it stands, from markers: lock it, correct it, or leave it at that."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+from synth.cli.exit_codes import ExitCode
+from synth.cli.say import say
+from synth.export.check_json import check_to_json, refusal_to_json
+from synth.export.files import json_bytes, write_all
+from synth.guide.check_text import check_text
+from synth.guide.checking import Verdict, check_arm
+from synth.guide.posture import hold_posture
+from synth.guide.settings import best_settings
+from synth.measurement import StandingArm, examine, sigma_of
+from synth.measurement.marker_file import load_readings
+from synth.synthesis import verify
+from synth.synthesis.solution import Design
+from synth.task.solution_file import load_shapes
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def check_file(
+    measured: Path,
+    solution: Path,
+    output: Path | None,
+    *,
+    as_json: bool,
+    corrections: int,
+    marker_error: float,
+    base_calibrated: bool,
+    confidence: float,
+    stiff: bool,
+    settings_within: float,
+) -> ExitCode:
+    """Check a file of markers against a solution and say what to do.
+
+    Args:
+        measured: The file of markers.
+        solution: The file of the solution.
+        output: Directory for `check.json`, or None.
+        as_json: Whether JSON is printed, and nothing else.
+        corrections: How many corrections the operator is still willing to make.
+        marker_error: Mean 3D error of a marker, m.
+        base_calibrated: Whether axis 1 is the z axis of the frame, found by turning joint 1.
+        confidence: Chance that all targets are within tolerance from which on the link is locked.
+        stiff: Whether the link was stiff already when it was measured.
+        settings_within: How far base and tool can be set after locking, m; 0: not at all.
+
+    Returns:
+        The exit code.
+    """
+    task, arms = load_shapes(solution)
+    designs = [Design(arm, verify(task, arm)) for arm in arms]
+    joint1 = hold_posture(task, arms[0]).joint1
+    readings = load_readings(measured, task.robot, joint1)
+    wanted = StandingArm.of(arms[0], joint1)
+    examination = examine(
+        readings, wanted, task.robot, sigma_of(marker_error), base_calibrated=base_calibrated
+    )
+    if examination.fit is None:
+        content, text = refusal_to_json(examination), f"{measured}: {examination.refusal}"
+        code = ExitCode.WRONG_INPUT
+    else:
+        fit = examination.fit
+        check = check_arm(task, designs, fit, corrections=corrections, confidence=confidence, stiff=stiff)
+        settings = (
+            best_settings(task, task.robot, fit, check.now.joints, base=settings_within, tool=settings_within)
+            if settings_within > 0.0
+            else None
+        )
+        content = check_to_json(check, examination, settings)
+        text = check_text(check, settings, examination.rejected)
+        code = ExitCode.DONE if check.verdict is Verdict.LOCK else ExitCode.NOT_MET
+    for warning in readings.warnings:
+        say(warning, on_stderr=True)
+    for path in [] if output is None else write_all({"check.json": json_bytes(content)}, output):
+        say(f"wrote {path}", on_stderr=True)
+    if as_json:
+        say(json.dumps(content, indent=2, allow_nan=False))
+    else:
+        say(text, on_stderr=code is ExitCode.WRONG_INPUT)
+    return code

@@ -1,0 +1,158 @@
+"""`synth check` and `synth calibrate` from files: what they print, and how they end."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from planted import ROBOT, planted_task
+from solutions import solution_document, write_markers, write_solution
+from standing import BARS, HOLD, SIGMA, seen
+
+from synth.cli import main
+from synth.errors import InputError
+from synth.measurement import StandingArm
+from synth.synthesis import solve, verify
+from synth.task.solution_file import load_shapes
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
+    task, _ = planted_task(5, 3)
+    task = replace(task, targets=tuple(replace(each, tolerance=5e-3) for each in task.targets))
+    solution = solve(task)
+    folder = tmp_path_factory.mktemp("loop")
+    return task, solution, folder, write_solution(folder / "solution.json", task, solution.designs)
+
+
+def run(*arguments):
+    return CliRunner().invoke(main, [str(each) for each in arguments])
+
+
+def markers(scene, arm, names=BARS):
+    return write_markers(scene[2] / "markers.csv", seen(arm, names, np.random.default_rng(0)))
+
+
+def wanted(scene):
+    return StandingArm.of(scene[1].designs[0].arm, HOLD)
+
+
+def test_a_solution_is_read_as_it_was(scene):
+    task, solution, _, file = scene
+    read, arms = load_shapes(file)
+    assert read.name == task.name
+    assert read.robot == task.robot
+    assert np.allclose(read.positions, task.positions)
+    assert len(arms) == len(solution.designs)
+    assert verify(read, arms[0]).found
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"schema": "synth.solution/1"}, "solve the task again"),
+        ({"schema": None}, "names no schema"),
+        ({"link": None}, "holds no shape"),
+        ({"task": {}}, "task.robot"),
+        ({"distances": {}}, "35 and 45"),
+        ({"link": {"arcs": [{"curvature": [1], "length": 0.1}]}}, "link.arcs[0].curvature"),
+    ],
+)
+def test_other_files_are_refused(scene, tmp_path, change, told):
+    path = tmp_path / "solution.json"
+    path.write_text(json.dumps({**solution_document(scene[0], scene[1].designs), **change}))
+    with pytest.raises(InputError) as caught:
+        load_shapes(path)
+    assert told in str(caught.value)
+
+
+@pytest.mark.parametrize("content", ["", "[]", "{", "nan", '{"schema": 3}'])
+def test_what_is_no_solution_is_refused(tmp_path, content):
+    path = tmp_path / "solution.json"
+    path.write_text(content)
+    with pytest.raises(InputError):
+        load_shapes(path)
+
+
+def test_a_link_in_its_place_is_locked(scene):
+    result = run("check", markers(scene, wanted(scene)), scene[3], "--base-calibrated")
+    assert result.exit_code == 0, result.output
+    assert "lock it" in result.output
+
+
+def test_the_json_of_a_check_is_the_contract(scene, tmp_path):
+    off = wanted(scene).moved(np.array([0.006, -0.005, 0.004, 0.03, 0.02, -0.04]))
+    result = run(
+        "check",
+        markers(scene, off),
+        scene[3],
+        "--base-calibrated",
+        "--json",
+        "--settings",
+        30,
+        "-o",
+        tmp_path,
+    )
+    assert result.exit_code == 1, result.output
+    content = json.loads(result.stdout)
+    assert json.loads((tmp_path / "check.json").read_text()) == content
+    assert content["schema"] == "synth.check/1"
+    assert content["status"] == "correct"
+    assert content["lock"] is False
+    assert content["probability_all_within"] < 0.5
+    axis = content["measured"]["axis2"]
+    assert np.linalg.norm(np.array(axis["point"]) - off.end) < 1e-3
+    assert np.linalg.norm(np.array(axis["direction"]) - off.axis) < 5e-3
+    assert content["measured"]["markers_used"] == BARS.split()
+    for target in content["targets"]:
+        assert len(target["joints"]) == 2
+        assert 0.0 < target["expected_miss"] <= target["miss_95"]
+    correction = content["correction"]
+    move = np.concatenate([correction["move"], correction["rotate"]])
+    p3 = np.array(correction["markers"]["P3"])
+    aim = off.moved(move)
+    assert np.linalg.norm(p3 - (aim.end - ROBOT.tip_offset * aim.axis)) < 2e-3
+    assert correction["words"]
+    assert set(content["settings"]) >= {"base", "rigid_link", "expected_worst_miss"}
+
+
+def test_markers_that_are_not_believed_end_with_2(scene):
+    path = markers(scene, wanted(scene))
+    path.write_text(path.read_text().replace("x_mm,y_mm,z_mm", "x_m,y_m,z_m"))
+    assert run("check", path, scene[3]).exit_code == 2
+    readings = seen(wanted(scene), BARS)
+    path = write_markers(scene[2] / "cm.csv", replace(readings, positions=10.0 * readings.positions))
+    result = run("check", path, scene[3], "--json")
+    assert result.exit_code == 2
+    assert json.loads(result.stdout)["status"] == "unusable"
+    assert "the unit is wrong" in json.loads(result.stdout)["message"]
+
+
+def test_calibration_from_a_file(scene):
+    rng = np.random.default_rng(0)
+    limits = ROBOT.joint_limits
+    joints = np.column_stack(
+        [
+            rng.uniform(limits.base.lower, limits.base.upper, 100),
+            rng.uniform(limits.second.lower, limits.second.upper, 100),
+        ]
+    )
+    true = wanted(scene).moved(np.array([0.005, 0.0, 0.003, 0.02, 0.0, 0.01]))
+    points = 1e3 * (true.forward(joints) + SIGMA * rng.normal(size=(100, 3)))
+    table = np.hstack([points, np.degrees(joints)])
+    path = scene[2] / "points.csv"
+    np.savetxt(path, table, delimiter=",", header="x_mm,y_mm,z_mm,joint1_deg,joint2_deg", comments="")
+    result = run("calibrate", path, scene[3], "--json")
+    assert result.exit_code == 0, result.output
+    content = json.loads(result.stdout)
+    assert content["schema"] == "synth.calibration/1"
+    assert content["surface_rms"] < 0.1e-3
+    assert np.array(content["covariance"]).shape == (5, 5)
+    assert np.linalg.norm(np.array(content["axis2"]["direction"]) - true.axis) < 1e-3
+    assert content["distances"]["34"] == pytest.approx(ROBOT.d34)
+    assert len(content["targets"]) == 3
+    np.savetxt(path, table[table[:, 4] < 90.0][:, :3], delimiter=",", header="x_mm,y_mm,z_mm", comments="")
+    result = run("calibrate", path, scene[3])
+    assert result.exit_code == 1
+    assert "does not determine the surface" in result.output
