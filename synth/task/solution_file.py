@@ -245,7 +245,7 @@ def _obstacle(read: _Obstacle) -> Obstacle:
         ends = np.array([read.capsule.start, read.capsule.end])
         return Obstacle(read.name, Capsule(ends, read.capsule.radius))
     if read.sphere is not None:
-        return Obstacle(read.name, Sphere(read.sphere.center, read.sphere.radius))
+        return Obstacle(read.name, Sphere(np.array(read.sphere.center), read.sphere.radius))
     box = read.box
     if box is None:  # the model allows no such obstacle
         raise TypeError(read)
