@@ -361,11 +361,15 @@ def test_a_gap_that_may_be_joint_1s_is_said_to_be_so():
     task = noisy_task(2)
     limits = replace(task.robot.joint_limits, base=Interval(-0.2, 0.2))
     narrow = replace(task, robot=replace(task.robot, joint_limits=limits))
-    bound = prove(narrow, 0.3, np.full(len(task.targets), 0.3), tightest=1e-3, stop=lambda: True)
+    bound = prove(narrow, 0.3, np.full(len(task.targets), 0.3), tightest=1e-3, watch=Watch(stop=lambda: True))
     assert "leaves out that joint 1 turns by 23 deg only; it may be all that the gap is" in bound.sentence
     assert "leaves out" not in replace(bound, lower_bound=0.29995).sentence  # there is no gap to speak of
     free = replace(task.robot, joint_limits=JointLimits(second=task.robot.joint_limits.second))
     bound = prove(
-        replace(task, robot=free), 0.3, np.full(len(task.targets), 0.3), tightest=1e-3, stop=lambda: True
+        replace(task, robot=free),
+        0.3,
+        np.full(len(task.targets), 0.3),
+        tightest=1e-3,
+        watch=Watch(stop=lambda: True),
     )
     assert "leaves out" not in bound.sentence

@@ -51,7 +51,7 @@ def test_a_target_in_an_obstacle_is_impossible():
     box = Box(task.positions[2], np.array([0.1, 0.2, 0.04]), 0.3)
     solution = solve(replace(task, obstacles=(Obstacle("crate", box),)))
     assert solution.status is Status.PROVEN_IMPOSSIBLE
-    assert solution.reasons == ("target 3 is in crate: the end effector would be 20.0 mm inside",)
+    assert solution.reasons == ("target 3 is in crate: the end effector would be at least 20.0 mm inside",)
 
 
 def test_a_base_in_an_obstacle_is_impossible():
@@ -59,7 +59,7 @@ def test_a_base_in_an_obstacle_is_impossible():
     obstacle = Obstacle("table", Box(np.zeros(3), np.array([0.2, 0.2, 0.13])))
     solution = solve(replace(task, obstacles=(obstacle,)))
     assert solution.status is Status.PROVEN_IMPOSSIBLE
-    assert solution.reasons[0] == "the link starts at P2, 7.0 mm inside table"
+    assert solution.reasons[0] == "the link starts at P2, at least 6.9 mm inside table"
 
 
 def test_planes_leave_the_obstacle_behind_them_and_the_arm_before_them():

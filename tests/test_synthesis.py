@@ -254,7 +254,7 @@ def test_a_stop_keeps_the_best_so_far():
 
     def stop():
         asked.append(None)
-        return len(asked) > 200
+        return len(asked) > 20
 
     solution = solve(task, stop=stop)
     assert solution.status is Status.LIMIT
@@ -291,7 +291,7 @@ def test_nearly_meeting_axes_have_two_sheets_and_the_right_one_is_chosen():
 
 @pytest.mark.parametrize("seed", [1, 9, 22, 26, 40])
 def test_the_exact_answer_is_found_though_most_starts_end_a_tenth_of_a_millimetre_beside_it(seed):
-    solution = solve(nearly_special_task(seed, tolerance=2e-5))
+    solution = solve(nearly_special_task(seed, tolerance=1e-6))
     assert solution.found
     assert independent_misses(solution).max() < 1e-6
 
@@ -301,8 +301,9 @@ def test_without_alternatives_the_first_shape_is_the_answer():
     first, whole = solve(task, alternatives=0), solve(task)
     assert first.found
     assert (first.starts, len(first.designs)) == (1, 1)
-    assert whole.starts > 1
-    assert whole.robot.shape.bending_energy <= first.robot.shape.bending_energy
+    assert len(whole.designs) > 1
+    # The first one leans on its limits; the others were looked for because of that.
+    assert whole.best.figures.shortfall < first.best.figures.shortfall
     assert solve(noisy(3, 8, 0.03), alternatives=0).starts < solve(noisy(3, 8, 0.03)).starts
 
 

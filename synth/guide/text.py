@@ -13,7 +13,7 @@ import numpy as np
 from synth.guide.guide import SPACING, make_guide
 from synth.guide.instructions import base_sentence, hand_sentence, instructions, link_sentence
 from synth.robot import MOST_CLEARANCE
-from synth.rounding import rounded_down, rounded_up
+from synth.rounding import Unit, rounded_down, rounded_up
 from synth.task import DEFAULT_TOLERANCE
 
 if TYPE_CHECKING:
@@ -178,8 +178,15 @@ def _shape_bullets(guide: Guide) -> list[str]:
 
 
 def _shape_line(design: Design) -> str:
-    """Return one of several shapes in a line."""
+    """Return one of several shapes in a line, with the figures by which a person chooses."""
     worst = rounded_up(float(design.verification.misses.max()), digits=3)
+    figures = design.figures
+    if figures is not None and design.verification.found:
+        by_hand = rounded_up(figures.forgiveness.expected_worst_miss)
+        swing = rounded_up(figures.largest_swing, Unit.DEG, 0)
+        worst += f" mm, {by_hand:>4} by a hand to expect, swings of {swing} deg"
+        worst += f", no way from {figures.ways_missing} targets" if figures.ways_missing else ""
+        return f"worst miss {worst:>8}  {link_sentence(design.arm.shape)}, {design.arm.category.value}"
     return f"worst miss {worst:>8} mm  {link_sentence(design.arm.shape)}, {design.arm.category.value}"
 
 

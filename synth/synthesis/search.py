@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 _STARTS_AT_MOST = 48
 _STARTS_WHEN_IMPOSSIBLE = 12  # for a good best effort
 _FOLLOWED = 2  # shapes of a neighbour that are polished
-ALTERNATIVES = 3  # starts polished after a shape was found: for distinct, gentler and nearer ones
+ALTERNATIVES = 2  # shapes looked for after one was found, or else starts polished
 _ALTERNATIVES_THAT_MISS = 2  # likewise, at most, where no shape meets all targets
 _GAIN = 1e-3  # of the objective: the least that is worth another start
 _PROOF_TIME = 60.0  # s

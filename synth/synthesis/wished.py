@@ -38,18 +38,20 @@ if TYPE_CHECKING:
 # Random shapes; so many of them are led to the targets, half of them the best, half the calmest of some that
 # are drawn from the good ones.
 _SHAPES, _LED, _GOOD, _ASKED = 5_000, 60, 500, 200
-_PER_DESIGN = 6  # shapes looked at near each exact design, where there are any
+_FROM_KNOWN = 20  # bent ones of those that are known
+_PER_DESIGN = 3  # shapes looked at near each exact design, where there are any
 _FAR = 0.3  # m; misses are compared up to here
 _ITERATIONS, _ITERATIONS_AGAIN = 12, 6
 # Rounds of bending; shapes that are bent, and how many come of them; sizes of the bends in units of the
 # largest curvature; lengths change by a twentieth of that, m.
 _ROUNDS, _BENT, _VARIED, _SIZES, _LENGTHS = 10, 10, 50, (0.03, 0.1, 0.3), 0.05
-# So many rounds that gain no step of the first columns of `preferences` are the last.
+# So many rounds that gain next to nothing in the first columns of `preferences` are the last.
 _PATIENCE, _COUNTS = 3, 4
 # Bent shapes are led beside the targets, by up to this part of the tolerances: else these were of no use. Of
 # tolerances below this, m, there is nothing to be had: such targets are met exactly.
 _BESIDE, _TIGHT = 0.7, 1e-3
-_PART_OF_TOLERANCE = 0.9  # that a miss may take: the rest is for rounding, and for what was not looked at
+# What a miss may take of its tolerance: the rest is for rounding; and where targets are met exactly.
+_PART_OF_TOLERANCE, _EXACTLY = 0.9, 0.02
 _DISTINCT = 0.03  # m, between link ends with axes of ARM_LENGTH
 
 
@@ -88,7 +90,10 @@ def _searched(
 ) -> _Pool:
     """Return the shapes that are wanted most, with limits drawn in."""
     beginnings = np.concatenate(
-        [_promising(narrow, rng).unknowns, _varied(narrow.robot, [Population.of(arm) for arm in known], rng)]
+        [
+            _promising(narrow, rng).unknowns,
+            _varied(narrow.robot, [Population.of(arm) for arm in known], _FROM_KNOWN, rng),
+        ]
     )
     led = refine(narrow, Population(narrow.robot, beginnings), iterations=_ITERATIONS)
     pool = _Pool.of(task, narrow, led.population)
@@ -101,14 +106,15 @@ def _searched(
         if stop() or not len(pool.table):
             break
         gained.append(pool.table[0, :_COUNTS])
-        if len(gained) > _PATIENCE and (gained[-1] > gained[-1 - _PATIENCE] - STEPS[:_COUNTS]).all():
+        if len(gained) > _PATIENCE and (gained[-1] > gained[-1 - _PATIENCE] - 0.2 * STEPS[:_COUNTS]).all():
             break
-        bent = _varied(narrow.robot, [pool.population.take(pool.distinct()[:_BENT])], rng)
+        bent = _varied(narrow.robot, [pool.population.take(pool.distinct()[:_BENT])], _VARIED, rng)
         led = refine(_beside(narrow, rng), Population(narrow.robot, bent), iterations=_ITERATIONS_AGAIN)
         pool = pool.joined(_Pool.of(task, narrow, led.population))
     if tight and len(pool.table):
         chosen = pool.population.take(pool.distinct()[:_BENT])
-        pool = _Pool.of(task, narrow, refine(narrow, chosen, iterations=_ITERATIONS_AGAIN).population)
+        led = refine(narrow, chosen, iterations=_ITERATIONS_AGAIN)
+        pool = _Pool.of(task, narrow, led.population, _EXACTLY)
     return pool
 
 
@@ -132,11 +138,11 @@ def _random_shapes(robot: Robot) -> Population:
     return Population.sample(robot, _SHAPES, np.random.default_rng(0))
 
 
-def _varied(robot: Robot, parents: Sequence[Population], rng: np.random.Generator) -> FloatArray:
-    """Return unknowns of shapes bent at random by a little or more, some from each of the parents."""
+def _varied(robot: Robot, parents: Sequence[Population], count: int, rng: np.random.Generator) -> FloatArray:
+    """Return unknowns of so many shapes bent at random by a little or more, some from each of the parents."""
     unknowns = np.concatenate([each.unknowns for each in parents])
-    unknowns = np.resize(unknowns, (_VARIED, unknowns.shape[1]))
-    size = rng.choice(_SIZES, (_VARIED, 1)) * np.ones(unknowns.shape)
+    unknowns = np.resize(unknowns, (count, unknowns.shape[1]))
+    size = rng.choice(_SIZES, (count, 1)) * np.ones(unknowns.shape)
     size[:, 2 * ARCS :] *= _LENGTHS
     return into_limits(robot, unknowns + size * rng.normal(size=unknowns.shape))
 
@@ -162,17 +168,18 @@ class _Pool:
     table: FloatArray
 
     @classmethod
-    def of(cls, task: Task, narrow: Task, population: Population) -> _Pool:
+    def of(cls, task: Task, narrow: Task, population: Population, part: float = _PART_OF_TOLERANCE) -> _Pool:
         """Return those of some shapes that meet a task, as far as samples tell.
 
         Args:
             task: The task.
             narrow: The same with limits drawn in.
             population: The shapes.
+            part: Of each tolerance, that a miss may take.
         """
         aims = Aims(task.positions, narrow.robot.joint_limits)
         postures = Postures.nearest(aims, population.kinematics)
-        within = (np.sqrt(postures.squared) <= _PART_OF_TOLERANCE * task.tolerances).all(axis=1)
+        within = (np.sqrt(postures.squared) <= part * task.tolerances).all(axis=1)
         joints = postures.joints
         within &= _over_floor(task, population, joints)
         population, joints = population.take(within), joints[within]
