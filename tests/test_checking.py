@@ -44,7 +44,8 @@ def test_a_link_in_its_place_is_locked(scene):
     check = check_arm(task, designs, fit(scene, wanted))
     assert check.verdict is Verdict.LOCK
     assert check.correction is None
-    assert misses(wanted, check.now.joints, task).max() < 1e-3
+    # No worse than the shape is by itself, which uses its tolerance, but for what the markers leave open.
+    assert misses(wanted, check.now.joints, task).max() < designs[0].verification.misses.max() + 1e-3
     assert "lock it" in check_text(check)
 
 
