@@ -33,7 +33,11 @@ def test_the_link_moves_less_than_to_the_gentlest_shape(seed):
     nearest = solve(replace(task, current=present))
     assert gentlest.found
     assert nearest.found
-    assert moved(nearest.robot.shape, present) < moved(gentlest.robot.shape, present)
+    # The shape that a person would want otherwise may happen to be the one that moves least.
+    assert moved(nearest.robot.shape, present) <= moved(gentlest.robot.shape, present)
+    assert moved(nearest.robot.shape, present) < max(
+        moved(one.arm.shape, present) for one in gentlest.designs
+    )
 
 
 def test_what_is_bent_right_already_stays_nearly_as_it_is():
