@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from synth.errors import SolverError
+from synth.synthesis.figures import judged
 from synth.synthesis.nlp import Structure, SynthesisNlp, shared_nlp
 from synth.synthesis.population import ARCS
 from synth.synthesis.ranking import objective
@@ -99,9 +100,11 @@ class Polishing:
         Args:
             arm: The robot in the shape.
             joints: Joint angles at the targets that `verify` considers, shape (n, 2), rad.
-            stay: Whether it keeps these where they will do.
+            stay: Whether it keeps these where they will do; then it is judged, too.
         """
         with self.watch.on("verifying"):
             design = Design(arm, verify(self.task, arm, joints, keep=stay))
+            if stay and design.verification.found:
+                design = judged(self.task, design)
         (self.designs if design.verification.possible else self.blocked).append(design)
         return design

@@ -29,11 +29,12 @@ _COMPARABLE = 1.5
 # Two shapes nearer than this all along, m, are one: a hand places the link to 9.6 +- 2.1 mm (Ranne,
 # Clark and Rojas, 2022).
 _SAME_SHAPE = 0.010
-# A joint that swings by less than this between two targets is calm, rad; with the step, 120 deg are as good.
-_CALM = math.radians(105.0)
+# A joint that swings by no more than this between two targets is calm, rad.
+CALM = math.radians(120.0)
 # What less than so much apart, of `preferences`, is as good: neither noise nor a trifle of one decides over
 # the next. Ways; margins; swings, rad; m; rad; 1/m.
 STEPS = np.array([1.0, 0.1, math.radians(15.0), 0.5e-3, math.radians(10.0), 1e-9])
+_FIRST = 3  # columns of `preferences` that have an end: all ways, all margins, calm
 _LESS_MARGIN = 0.5  # that an alternative may have, as a share of all of one kind
 _ROUNDING = 1e-9
 
@@ -50,14 +51,15 @@ def preferences(
 
     1. Ways lead from every target to the next.
     2. It keeps off the limits: of joints, length, bend, and of obstacles.
-    3. No joint swings by more than about 120 deg between two targets.
+    3. No joint swings by more than 120 deg between two targets.
     4. It forgives the hand that bends it.
     5. The joints travel little.
     6. The link is bent gently.
 
     Args: as the fields of `Figures`; numbers, or arrays of many shapes.
     """
-    restless = np.maximum(np.subtract(largest_swing, _CALM), 0.0)
+    excess = np.subtract(largest_swing, CALM)
+    restless = np.where(excess > 0.0, excess + STEPS[2], 0.0)  # never as good as calm
     columns = (ways_missing, shortfall, restless, expected_worst_miss, travel, bend)
     return np.stack([np.asarray(column, dtype=np.float64) for column in columns], axis=-1)
 
@@ -80,6 +82,16 @@ def preferred(table: FloatArray, steps: FloatArray = STEPS) -> NDArray[np.intp]:
         _, alike = np.unique(np.column_stack([alike, behind]), axis=0, return_inverse=True)
         alike = alike.ravel()
     return np.argsort(alike, kind="stable")
+
+
+def leaves_no_wish(figures: Figures | None) -> bool:
+    """Whether a shape has all ways, all margins, and calm joints on the ways."""
+    return figures is not None and is_content(_row(figures))
+
+
+def is_content(row: FloatArray) -> bool:
+    """Whether a row of `preferences` leaves nothing to wish for in ways, margins and swings."""
+    return bool((row[:_FIRST] < STEPS[:_FIRST]).all())
 
 
 def _row(figures: Figures) -> FloatArray:
@@ -124,16 +136,17 @@ def best_of(task: Task, designs: Sequence[Design]) -> tuple[Design, ...]:
         figures = [design.figures for design in found if design.figures is not None]
         table = np.array([_row(each) for each in figures])
         order = _order_of(table, [each.change for each in figures])
-        beside = _stand_beside(table, table[order[0]])
+        less_margin = _LESS_MARGIN if task.current is None else np.inf
+        beside = _stand_beside(table, table[order[0]], less_margin)
         return _distinct([found[index] for index in order if beside[index]])
     misses = sorted((objective(task, design), index) for index, design in enumerate(designs))
     near = [designs[index] for value, index in misses if value <= _COMPARABLE * misses[0][0]]
     return tuple(judged(task, design) for design in _distinct(near))
 
 
-def _stand_beside(table: FloatArray, best: FloatArray) -> NDArray[np.bool_]:
+def _stand_beside(table: FloatArray, best: FloatArray, less_margin: float) -> NDArray[np.bool_]:
     """Return which shapes are alternatives to the best one: with all its ways, and nearly its margins."""
-    return np.asarray((table[:, 0] <= best[0]) & (table[:, 1] <= best[1] + _LESS_MARGIN))
+    return np.asarray((table[:, 0] <= best[0]) & (table[:, 1] <= best[1] + less_margin))
 
 
 def _distinct(designs: Sequence[Design]) -> tuple[Design, ...]:

@@ -18,7 +18,7 @@ from synth.synthesis.impossibility import why_impossible
 from synth.synthesis.many_targets import improved, levelled, ranked
 from synth.synthesis.polishing import Polishing
 from synth.synthesis.population import in_equal_arcs
-from synth.synthesis.ranking import best_of, objective
+from synth.synthesis.ranking import best_of, leaves_no_wish, objective
 from synth.synthesis.screening import Start, starts
 from synth.synthesis.solution import Design, Solution, Status
 from synth.synthesis.verdict import message, why_no_better
@@ -37,6 +37,7 @@ _STARTS_AT_MOST = 48
 _STARTS_WHEN_IMPOSSIBLE = 12  # for a good best effort
 _FOLLOWED = 2  # shapes of a neighbour that are polished
 ALTERNATIVES = 2  # shapes looked for after one was found, or else starts polished
+_LOOKED_AT = 4  # shapes that a person would want, for each alternative
 _ALTERNATIVES_THAT_MISS = 2  # likewise, at most, where no shape meets all targets
 _GAIN = 1e-3  # of the objective: the least that is worth another start
 _PROOF_TIME = 60.0  # s
@@ -125,14 +126,17 @@ class Search:
     def _wished_for(self) -> bool:
         """Look for shapes that a person would rather have than the first one; whether there are any."""
         known = [design.arm for design in self.polishing.designs if design.verification.found]
-        found, candidates = 0, wished(self.part, known, self.seed, self.watch.is_up)
-        for _ in range(2 * self.alternatives):
+        found, wanted, candidates = 0, 0, wished(self.part, known, self.seed, self.watch.is_up)
+        for _ in range(_LOOKED_AT * self.alternatives):
             with self.watch.on("solving"):
                 candidate = next(candidates, None)
             if candidate is None or self.watch.is_up():
                 break
-            found += self.polishing.keep(*candidate, stay=True).verification.found
-            if found == self.alternatives:
+            design = self.polishing.keep(*candidate, stay=True)
+            if design.verification.found:
+                found += 1
+                wanted += leaves_no_wish(design.figures)  # by its ways, not only by where they end
+            if wanted == self.alternatives:
                 break
         return found > 0
 

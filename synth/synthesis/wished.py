@@ -14,13 +14,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.robot import Interval
 from synth.synthesis.exact_starts import exact_designs, nearest_to_designs
 from synth.synthesis.forgiveness import misses_after_a_hand
 from synth.synthesis.margins import Margins, drawn_in
 from synth.synthesis.motion import MOST_MOTIONS
 from synth.synthesis.population import ARCS, ARM_LENGTH, Population, into_limits
 from synth.synthesis.postures import Aims, Postures
-from synth.synthesis.ranking import STEPS, preferences, preferred
+from synth.synthesis.ranking import CALM, STEPS, is_content, preferences, preferred
 from synth.synthesis.refinement import refine, relative_weights
 from synth.synthesis.screening import estimated_misses
 from synth.synthesis.separation import overlaps
@@ -38,13 +39,17 @@ if TYPE_CHECKING:
 # Random shapes; so many of them are led to the targets, half of them the best, half the calmest of some that
 # are drawn from the good ones.
 _SHAPES, _LED, _GOOD, _ASKED = 5_000, 60, 500, 200
+# Where joint 2 is kept in a part of its range as wide as a calm swing: shapes led, iterations, and where the
+# parts lie, 0 at the beginning of the range, 1 at its end.
+_LED_CALMER, _ITERATIONS_CALMER = 300, 30
+_PARTS = (0.25, 0.75, 0.5, 0.0, 1.0)
 _FROM_KNOWN = 20  # bent ones of those that are known
 _PER_DESIGN = 3  # shapes looked at near each exact design, where there are any
 _FAR = 0.3  # m; misses are compared up to here
 _ITERATIONS, _ITERATIONS_AGAIN = 12, 6
 # Rounds of bending; shapes that are bent, and how many come of them; sizes of the bends in units of the
 # largest curvature; lengths change by a twentieth of that, m.
-_ROUNDS, _BENT, _VARIED, _SIZES, _LENGTHS = 10, 10, 50, (0.03, 0.1, 0.3), 0.05
+_ROUNDS, _BENT, _VARIED, _SIZES, _LENGTHS = 24, 10, 50, (0.03, 0.1, 0.3, 0.6), 0.05
 # So many rounds that gain next to nothing in the first columns of `preferences` are the last.
 _PATIENCE, _COUNTS = 3, 4
 # Bent shapes are led beside the targets, by up to this part of the tolerances: else these were of no use. Of
@@ -88,19 +93,53 @@ def wished(
 def _searched(
     task: Task, narrow: Task, known: Sequence[Arm], rng: np.random.Generator, stop: Callable[[], bool]
 ) -> _Pool:
-    """Return the shapes that are wanted most, with limits drawn in."""
-    beginnings = np.concatenate(
-        [
-            _promising(narrow, rng).unknowns,
-            _varied(narrow.robot, [Population.of(arm) for arm in known], _FROM_KNOWN, rng),
-        ]
-    )
-    led = refine(narrow, Population(narrow.robot, beginnings), iterations=_ITERATIONS)
-    pool = _Pool.of(task, narrow, led.population)
-    tight = float(task.tolerances.min()) < _TIGHT
+    """Return the shapes that are wanted most, with limits drawn in.
+
+    While the best leaves ways, margins or calm to wish for, all is begun anew with joint 2 kept in a part of
+    its range, where no swing can be large: calm shapes are too rare to be met by chance.
+    """
+    pool = _bred(task, narrow, known, _LED, rng, stop)
+    for calmer in _calmer(narrow) if task.current is None else ():  # else the nearest to it is wanted
+        if stop() or not len(pool.table) or is_content(pool.table[0]):
+            break
+        pool = pool.joined(_bred(task, calmer, (), _LED_CALMER, rng, stop))
+    if float(task.tolerances.min()) < _TIGHT and len(pool.table):
+        chosen = pool.population.take(pool.distinct()[:_BENT])
+        led = refine(narrow, chosen, iterations=_ITERATIONS_AGAIN)
+        pool = _Pool.of(task, narrow, led.population, _EXACTLY)
+    return pool
+
+
+def _calmer(task: Task) -> Iterator[Task]:
+    """Yield the same with joint 2 kept in one part of its range after another, and twice as it is."""
+    limits = task.robot.joint_limits
+    spare = max(limits.second.upper - limits.second.lower - CALM, 0.0)
+    for part in _PARTS:
+        lower = limits.second.lower + part * spare
+        second = Interval(lower, min(lower + CALM, limits.second.upper))
+        yield replace(task, robot=replace(task.robot, joint_limits=replace(limits, second=second)))
+    yield from (task, task)
+
+
+def _bred(
+    task: Task,
+    narrow: Task,
+    known: Sequence[Arm],
+    led: int,
+    rng: np.random.Generator,
+    stop: Callable[[], bool],
+) -> _Pool:
+    """Return the shapes that are wanted most of some random ones and of what bending makes of them."""
+    beginnings = _promising(narrow, led, rng).unknowns
+    if known:
+        varied = _varied(narrow.robot, [Population.of(arm) for arm in known], _FROM_KNOWN, rng)
+        beginnings = np.concatenate([beginnings, varied])
+    iterations = _ITERATIONS if known else _ITERATIONS_CALMER
+    refined = refine(narrow, Population(narrow.robot, beginnings), iterations=iterations)
+    pool = _Pool.of(task, narrow, refined.population)
     # Where targets are met exactly and fix finitely many surfaces, bending changes nothing that counts more
     # than the bend itself.
-    finite = tight and exact_designs(narrow) is not None
+    finite = float(task.tolerances.min()) < _TIGHT and exact_designs(narrow) is not None
     gained = [np.full(_COUNTS, np.inf)]
     for _ in range(0 if finite else _ROUNDS):
         if stop() or not len(pool.table):
@@ -109,16 +148,12 @@ def _searched(
         if len(gained) > _PATIENCE and (gained[-1] > gained[-1 - _PATIENCE] - 0.2 * STEPS[:_COUNTS]).all():
             break
         bent = _varied(narrow.robot, [pool.population.take(pool.distinct()[:_BENT])], _VARIED, rng)
-        led = refine(_beside(narrow, rng), Population(narrow.robot, bent), iterations=_ITERATIONS_AGAIN)
-        pool = pool.joined(_Pool.of(task, narrow, led.population))
-    if tight and len(pool.table):
-        chosen = pool.population.take(pool.distinct()[:_BENT])
-        led = refine(narrow, chosen, iterations=_ITERATIONS_AGAIN)
-        pool = _Pool.of(task, narrow, led.population, _EXACTLY)
+        refined = refine(_beside(narrow, rng), Population(narrow.robot, bent), iterations=_ITERATIONS_AGAIN)
+        pool = pool.joined(_Pool.of(task, narrow, refined.population))
     return pool
 
 
-def _promising(task: Task, rng: np.random.Generator) -> Population:
+def _promising(task: Task, led: int, rng: np.random.Generator) -> Population:
     """Return random shapes that pass the targets nearly, and some near exact designs."""
     shapes = _random_shapes(task.robot)
     misses = np.minimum(estimated_misses(task, shapes), _FAR)
@@ -126,7 +161,7 @@ def _promising(task: Task, rng: np.random.Generator) -> Population:
     good = rng.permutation(order[:_GOOD])[:_ASKED]
     postures = Postures.nearest(Aims(task.positions, task.robot.joint_limits), shapes.take(good).kinematics)
     calm = good[np.argsort(_swings(postures.joints).max(axis=1, initial=0.0), kind="stable")]
-    chosen = np.union1d(order[: _LED // 2], calm[: _LED // 2])
+    chosen = np.union1d(order[: led - _LED // 2], calm[: _LED // 2])
     if designs := exact_designs(task):
         chosen = np.union1d(chosen, nearest_to_designs(shapes, designs, _PER_DESIGN))
     return shapes.take(chosen)
