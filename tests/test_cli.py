@@ -7,7 +7,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import click
@@ -229,14 +228,14 @@ def test_ctrl_c_keeps_the_best_so_far(tmp_path):
         {"position": (target.position + shift).tolist()}
         for target, shift in zip(task.targets, noise, strict=True)
     ]
-    file = tmp_path / "noisy.yaml"
-    # The worst miss of so many is far more work than these seconds allow.
-    file.write_text(f"{HEADER}floor: null\nobjective: minimax\ntargets: {json.dumps(targets)}\n")
+    # The command waits for what is written into a pipe: when it has read that, its search is about to begin.
+    pipe = tmp_path / "noisy.yaml"
+    os.mkfifo(pipe)
     with subprocess.Popen(
-        [sys.executable, "-m", "synth", "solve", str(file), "--json"],
+        [sys.executable, "-m", "synth", "solve", str(pipe), "--json"],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     ) as process:  # fmt: skip
-        time.sleep(4.0)
+        pipe.write_text(f"{HEADER}floor: null\nobjective: minimax\ntargets: {json.dumps(targets)}\n")
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=60)
     assert "Traceback" not in err
