@@ -68,3 +68,13 @@ def test_postures_are_chosen_one_by_one():
     mixed = one.where(mask, other)
     assert np.array_equal(mixed.squared[mask], one.squared[mask])
     assert np.array_equal(mixed.joints[~mask], other.joints[~mask])
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_steps_of_joint_2_never_lead_away_from_a_target(seed):
+    population, aims = shapes_and_aims(seed)
+    theta2 = np.random.default_rng(seed).uniform(1.0, 5.0, (30, 12))
+    start = Postures.at(aims, population.kinematics, theta2)
+    led = Postures.led_from(aims, population.kinematics, theta2)
+    assert (led.squared <= start.squared).all()
+    assert (led.squared < start.squared).mean() > 0.9

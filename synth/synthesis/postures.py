@@ -140,7 +140,9 @@ class Postures:
             along, speed = here.free_tangent
             step = -dot(along, here.miss) / np.maximum(speed, _TINY)
             theta2 = here.theta2 + np.clip(step, -_FARTHEST_STEP, _FARTHEST_STEP)
-            here = cls.at(aims, kinematics, np.clip(theta2, second.lower, second.upper))
+            there = cls.at(aims, kinematics, np.clip(theta2, second.lower, second.upper))
+            # On the rim of the workspace P5 hardly moves, and such a step leads anywhere.
+            here = there.where(there.squared <= here.squared, here)
         return here
 
     @cached_property
