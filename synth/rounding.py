@@ -10,6 +10,8 @@ import math
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 from enum import Enum
 
+_MOST_DIGITS = 12  # decimals: finer than any limit is checked
+
 
 class Unit(Enum):
     """What a number is told in: its symbol, and how many of it are one in SI."""
@@ -17,6 +19,7 @@ class Unit(Enum):
     MM = "mm", 1e3
     DEG = "deg", math.degrees(1.0)
     PERCENT = "%", 1e2
+    M = "m", 1.0
 
     @property
     def symbol(self) -> str:
@@ -58,6 +61,25 @@ def at_least(value: float, unit: Unit = Unit.MM, digits: int = 1) -> str:
 def at_most(value: float, unit: Unit = Unit.MM, digits: int = 1) -> str:
     """Return an upper bound in words, such as "at most 456.9 mm"; see `rounded_up`."""
     return f"at most {rounded_up(value, unit, digits)} {unit.symbol}"
+
+
+def told_apart(value: float, limit: float, unit: Unit = Unit.MM, digits: int = 1) -> tuple[str, str]:
+    """Return a value and the limit that it breaks, with as many decimals as it takes not to look alike.
+
+    Both are rounded towards each other: the value breaks the limit by no less than is shown.
+
+    Args:
+        value: In SI units, above the limit or below it.
+        limit: In SI units.
+        unit: What to tell them in.
+        digits: Decimals, if these tell them apart.
+    """
+    inward, outward = (rounded_down, rounded_up) if value > limit else (rounded_up, rounded_down)
+    for more in range(digits, _MOST_DIGITS):
+        told = inward(value, unit, more), outward(limit, unit, more)
+        if told[0] != told[1] and (float(told[0]) > float(told[1])) == (value > limit):
+            break
+    return told
 
 
 def _rounded(value: float, unit: Unit, digits: int, rounding: str) -> str:

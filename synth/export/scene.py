@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.export.labels import Labels
-from synth.export.names import shortened
+from synth.export.labels import FONT_SIZE, Labels
+from synth.export.typesetting import shortened
 from synth.geometry import Box
 from synth.guide import MARKERS
 from synth.robot import BasePose
@@ -30,13 +30,14 @@ if TYPE_CHECKING:
 LINK, AXIS, TARGET, GHOST = "#0072B2", "#D55E00", "#000000", "#8C8C8C"
 # Which coordinates a view shows to the right and upwards: a third-angle projection.
 TOP, FRONT, SIDE = (0, 1), (0, 2), (1, 2)
-_LABEL = 24  # characters of an obstacle's name
+_LABEL = 33.0  # mm of paper, of an obstacle's name
 _POINTS_PER_MM = 72.0 / 25.4
 MOST_DRAWN = 1000  # targets, beside those that have a label: more cover each other
 _MOST_OF_LINK = 1000  # points of a very long link
 _AROUND = 120.0  # mm, how far obstacles are shown beyond the arm and its targets
+_FAR, _NEAR_SIDE = 250.0, 60.0  # mm; what begins farther off is not drawn, and of what does not this much
 _OUTLINE = 72  # directions in which the outline of an obstacle is looked for
-_AXIS_LENGTH = 120.0  # mm to either side of the markers, drawn of an axis
+_AXIS_LENGTH = 9.0  # mm of paper to either side of the markers, drawn of an axis
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,8 @@ class Scene:
         labels: A label for each target, or "" for those that have none.
         base: P1 and P2, shape (2, 3).
         floor: Height of the floor, or None.
-        obstacles: Name and solid of each obstacle, in the task frame and in m.
+        obstacles: Name and solid of each obstacle that is near, in the task frame and in m.
+        far_obstacles: Names of those that are too far off to be drawn.
         hold: The points at the hold angle of joint 1, or None without a shape to bend the link to.
         link: Centreline at that angle, shape (k, 3).
         diameter: Outer diameter of the link.
@@ -63,6 +65,7 @@ class Scene:
     base: FloatArray
     floor: float | None
     obstacles: Sequence[tuple[str, Solid]]
+    far_obstacles: Sequence[str]
     hold: Placement | None
     link: FloatArray
     diameter: float
@@ -86,18 +89,26 @@ class Scene:
             if guide.met:
                 hold = guide.hold
                 link = 1e3 * base.to_task(BasePose(yaw=hold.joint1).to_task(centreline))
-        return cls(
+        scene = cls(
             targets=1e3 * task.table.positions,
             reached=reached,
             labels=labels,
             base=1e3 * base.to_task([[0.0, 0.0, 0.0], [0.0, 0.0, task.robot.d12]]),
             floor=None if task.floor is None else 1e3 * (task.floor + base.position[2]),
-            obstacles=[(obstacle.name, obstacle.solid) for obstacle in task.obstacles],
+            obstacles=[],
+            far_obstacles=[],
             hold=hold,
             link=link,
             diameter=1e3 * task.robot.link.diameter,
             ghost=ghost,
             rigid=rigid,
+        )
+        near = [scene.is_near(obstacle.solid) for obstacle in task.obstacles]
+        named = [(obstacle.name, obstacle.solid) for obstacle in task.obstacles]
+        return replace(
+            scene,
+            obstacles=list(itertools.compress(named, near)),
+            far_obstacles=[name for (name, _), drawn in zip(named, near, strict=True) if not drawn],
         )
 
     @property
@@ -111,19 +122,33 @@ class Scene:
     @property
     def bounds(self) -> FloatArray:
         """Lowest and highest coordinates of all that is shown, shape (2, 3), with a margin."""
+        lowest, highest = self._of_the_arm
+        # Obstacles are shown as far as they are near, or their near side: a wall may be long.
+        low, high = self._of_the_arm + np.array([[-_AROUND], [_AROUND]])
+        for _, solid in self.obstacles:
+            ends = _ends(solid)
+            lowest = np.minimum(lowest, np.maximum(ends[0], np.minimum(low, ends[1] - _NEAR_SIDE)))
+            highest = np.maximum(highest, np.minimum(ends[1], np.maximum(high, ends[0] + _NEAR_SIDE)))
+        return np.array([lowest, highest])
+
+    def is_near(self, solid: Solid) -> bool:
+        """Whether an obstacle is near enough to the arm and its targets to be drawn."""
+        ends, farthest = _ends(solid), self._of_the_arm + np.array([[-_FAR], [_FAR]])
+        return bool(np.all(ends[0] <= farthest[1]) and np.all(ends[1] >= farthest[0]))
+
+    @property
+    def _of_the_arm(self) -> FloatArray:
+        """The bounds of all but the obstacles."""
         points = np.vstack([self.targets, self.base, self.link, self.ghost, self.rigid])
         if self.floor is not None:
             points = np.vstack([points, [*points[0, :2], self.floor]])
         margin = 0.5 * self.diameter + 0.05 * float(np.ptp(points, axis=0).max())
-        lowest, highest = points.min(axis=0) - margin, points.max(axis=0) + margin
-        # Obstacles are shown as far as they are near: a wall may be long.
-        farthest = np.array([lowest, highest]) + np.array([[-_AROUND], [_AROUND]])
-        for _, solid in self.obstacles:
-            ends = 1e3 * np.array([-solid.support(-np.eye(3)), solid.support(np.eye(3))])
-            if np.all(ends[0] <= farthest[1]) and np.all(ends[1] >= farthest[0]):
-                lowest = np.minimum(lowest, np.maximum(ends[0], farthest[0]))
-                highest = np.maximum(highest, np.minimum(ends[1], farthest[1]))
-        return np.array([lowest, highest])
+        return np.array([points.min(axis=0) - margin, points.max(axis=0) + margin])
+
+
+def _ends(solid: Solid) -> FloatArray:
+    """Return the lowest and highest coordinates of a solid, shape (2, 3), mm."""
+    return 1e3 * np.array([-solid.support(-np.eye(3)), solid.support(np.eye(3))])
 
 
 def draw_view(axes: Axes, scene: Scene, view: tuple[int, int], scale: float) -> None:
@@ -199,7 +224,10 @@ def _draw_floor(axes: Axes, height: float) -> None:
 
 def _draw_obstacle(axes: Axes, name: str, solid: Solid, view: tuple[int, int], labels: Labels) -> None:
     """Draw the outline of a convex solid, hatched, and name it in the middle of what is seen of it."""
-    outline = 1e3 * solid_outline(solid, view)
+    frame = np.array([axes.get_xlim(), axes.get_ylim()])
+    outline = _clipped(1e3 * solid_outline(solid, view), frame)
+    if not len(outline):
+        return
     axes.fill(
         *outline.T,
         facecolor="#F4EFE0",
@@ -209,8 +237,26 @@ def _draw_obstacle(axes: Axes, name: str, solid: Solid, view: tuple[int, int], l
         alpha=0.75,
         zorder=0.5,
     )
-    frame = np.array([axes.get_xlim(), axes.get_ylim()])
-    labels.add(shortened(name, _LABEL), np.clip(outline, frame[:, 0], frame[:, 1]).mean(axis=0))
+    labels.add(shortened(name, _LABEL, FONT_SIZE), outline.mean(axis=0))
+
+
+def _clipped(corners: FloatArray, frame: FloatArray) -> FloatArray:
+    """Return the corners of the part of a convex polygon, shape (k, 2), that is in a frame; none if none is.
+
+    Cut by one side of the frame, shape (2, 2), a row for each coordinate, after the other.
+    """
+    for axis, sign in itertools.product((0, 1), (1.0, -1.0)):
+        beyond = sign * corners[:, axis] - (frame[axis, 1] if sign > 0.0 else -frame[axis, 0])
+        kept = []
+        for index in range(len(corners)):
+            start, end = beyond[index - 1], beyond[index]
+            if start * end < 0.0:
+                share = start / (start - end)
+                kept.append(corners[index - 1] + share * (corners[index] - corners[index - 1]))
+            if end <= 0.0:
+                kept.append(corners[index])
+        corners = np.array(kept).reshape(-1, 2)
+    return corners
 
 
 def solid_outline(solid: Solid, view: tuple[int, int]) -> FloatArray:
@@ -232,7 +278,7 @@ def solid_outline(solid: Solid, view: tuple[int, int]) -> FloatArray:
 
 def _draw_axis(axes: Axes, points: FloatArray, pick: list[int], labels: Labels) -> None:
     """Draw the axis of a joint through two points, shape (2, 3), and some way beyond them."""
-    beyond = _AXIS_LENGTH / np.linalg.norm(points[1] - points[0]) * (points[1] - points[0])
+    beyond = _AXIS_LENGTH * labels.scale / np.linalg.norm(points[1] - points[0]) * (points[1] - points[0])
     line = np.stack([points[0] - beyond, points[1] + beyond])[:, pick]
     axes.plot(*line.T, color=AXIS, linewidth=1.1, linestyle="-.", zorder=5)
     labels.avoid_line(line)
