@@ -7,9 +7,10 @@ will do is rounded up. "At least 274.6 mm" is false where 274.585 mm exists; "at
 from __future__ import annotations
 
 import math
-from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from enum import Enum
 
+_ANY_DOUBLE = Context(prec=400)  # digits: 308 before the point, and what follows it
 _MOST_DIGITS = 12  # decimals: finer than any limit is checked
 
 
@@ -85,5 +86,5 @@ def told_apart(value: float, limit: float, unit: Unit = Unit.MM, digits: int = 1
 def _rounded(value: float, unit: Unit, digits: int, rounding: str) -> str:
     if not math.isfinite(value):
         return f"{value}"
-    number = unit.of(value).quantize(Decimal(1).scaleb(-digits), rounding=rounding)
-    return f"{number + 0:f}" if number else f"{abs(number):f}"  # no "-0.0"
+    number = unit.of(value).quantize(Decimal(1).scaleb(-digits), rounding, _ANY_DOUBLE)
+    return f"{number:f}" if number else f"{abs(number):f}"  # no "-0.0"

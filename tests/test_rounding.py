@@ -103,3 +103,8 @@ def test_a_depth_below_the_floor_is_never_told_as_none():
 def test_distances_that_no_triangle_has_are_told_with_the_digits_that_show_it():
     with pytest.raises(GeometryError, match=r"d13 = 2\.00000001 m is longer than d12 \+ d23 = 2 m"):
         realise(np.array([[0, 1, 2.00000001], [1, 0, 1], [2.00000001, 1, 0]]) ** 2)
+
+
+def test_lengths_beyond_all_measure_are_no_crash():
+    assert rounded_up(1e300, digits=2).endswith(".00")
+    assert told_apart(1e30, 0.11)[1] == "110.0"

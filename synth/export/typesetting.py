@@ -61,7 +61,7 @@ def wrapped(text: str, room: float, size: float, *, most: int | None = None, bol
         return width(line, size, bold=bold) <= room
 
     lines = [""]
-    for word in _KEPT.sub(_BLANK, legible(text)).replace("\n", " ").split(" "):
+    for word in _KEPT.sub(_BLANK, legible(" ".join(text.split()))).split(" "):
         longer = f"{lines[-1]} {word}" if lines[-1] else word
         if fits(longer):
             lines[-1] = longer
@@ -85,7 +85,7 @@ def families(text: str) -> list[str]:
 
 def legible(text: str) -> str:
     """Return a text without signs that no font draws."""
-    return text if text.isascii() else "".join(map(_drawable, text))
+    return text if text.isascii() and text.isprintable() else "".join(map(_drawable, text))
 
 
 @cache
@@ -110,10 +110,11 @@ def _drawable(sign: str) -> str:
 @cache
 def _family(sign: str) -> str:
     """Return the family that draws a sign: the sheet's own, or else the first one; empty if there is none."""
-    entries = [] if sign.isascii() or _has(_own(bold=False), sign) else _others()
-    if not entries:
-        return FAMILY if sign.isprintable() else ""
-    return next((entry.name for entry in entries if _has(entry.fname, sign)), "")
+    if not sign.isprintable() and sign != _BLANK:
+        return ""
+    if sign.isascii() or _has(_own(bold=False), sign):
+        return FAMILY
+    return next((entry.name for entry in _others() if _has(entry.fname, sign)), "")
 
 
 @cache

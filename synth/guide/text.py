@@ -45,12 +45,11 @@ def summary_text(solution: Solution, guide: Guide | None = None) -> str:
     if solution.designs:
         lines += _target_lines(solution.targets)
     else:
-        lines.append(
-            _bullet(f"{_counted(len(solution.task.targets), 'target')}: there is no shape to reach any")
-        )
+        asked = _counted(len(solution.task.targets), "target")
+        lines.append(_bullet(f"{asked} asked for, none reached: there is no shape"))
     bullets = [] if guide is None or not guide.met else _shape_bullets(guide)
     if len(solution.designs) > 1:
-        best = ", the best" if solution.shape == 1 else ""
+        best = (", the best" if solution.found else ", the nearest") if solution.shape == 1 else ""
         bullets.append(
             f"{len(solution.designs)} distinct shapes; this is shape {solution.shape}{best} "
             "(--all lists them, --shape K shows another)"
@@ -89,12 +88,10 @@ def help_told(solution: Solution) -> list[str]:
     told += solution.notes
     if solution.status is Status.LIMIT:
         told.append("more time may find a shape")
-    if not solution.explained:
+    if not (solution.explained or solution.releases):
         told.append("solving with --why looks for one limit that, if it gave way, would let the task be met")
     if open_yet and solution.bound is None and solution.task.robot.rigid_link.is_fixed:
-        told.append(
-            "solving with --prove tells how near any shape can come, or that the task is impossible"
-        )
+        told.append("solving with --prove tells how near any shape can come, or that the task is impossible")
     return told
 
 
@@ -154,7 +151,7 @@ def solution_text(solution: Solution, *, alternatives: bool = False) -> str:
     guide = make_guide(solution.task, solution.designs[0]) if solution.designs else None
     lines = [guide_text(guide, solution)]
     if alternatives and solution.designs[1:]:
-        lines += ["", "Other shapes, the best first:"]
+        lines += ["", f"Other shapes, the {'best' if solution.found else 'nearest'} first:"]
         lines += [
             f"{number:>3}  {_shape_line(design)}"
             for number, design in zip(solution.shape_numbers[1:], solution.designs[1:], strict=True)
@@ -221,8 +218,9 @@ def _target_lines(targets: Sequence[TargetResult]) -> list[str]:
     lines = []
     if len(targets) > _MOST_TARGETS:
         reached = sum(target.within_tolerance for target in targets)
+        are = "is" if reached == 1 else "are"
         lines = [
-            _bullet(f"{reached} of {len(targets)} targets are within tolerance; the {_MOST_TARGETS} worst:")
+            _bullet(f"{reached} of {len(targets)} targets {are} within tolerance; the {_MOST_TARGETS} worst:")
         ]
         targets = sorted(targets, key=lambda target: -target.miss / target.tolerance)[:_MOST_TARGETS]
     width = max(len(target.name) for target in targets)

@@ -38,6 +38,7 @@ _RESOLUTION = 0.03  # of an amount
 _NOTHING = 1e-6  # of a limit
 _HALVINGS = 6
 _BASE_STEPS = 12
+_BASE_DIGITS = (1, 2, 3)  # decimals of a millimetre; the more the nearer to what was found to do
 _FARTHEST_BASE = 1.0  # m
 
 
@@ -208,10 +209,16 @@ def _base_moved(solution: Solution, watch: Watch) -> Release | None:
         else:
             too_little = part
     shift = enough * shift
+    for digits in _BASE_DIGITS:  # what is told is what does: that place, not one that rounds to it
+        told = np.round(1e3 * shift, digits) / 1e3
+        followed = follow(moved(told), designs, watch=watch.aside())
+        if followed.found:
+            shift, designs = told, followed.designs
+            break
     distance = float(np.linalg.norm(shift))
-    x, y, z = 1e3 * shift
+    x, y, z = (f"{1e3 * each:z.{digits}f}" for each in shift)
     return Release(
         "base", distance, distance / task.robot.link.length.upper,
-        f"the base moved by {1e3 * distance:.1f} mm, ({x:z.1f}, {y:z.1f}, {z:z.1f}) mm",
+        f"the base moved by {rounded_up(distance)} mm (x {x}, y {y}, z {z} mm)",
         designs[0], moved(shift),
     )  # fmt: skip
