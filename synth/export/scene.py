@@ -237,7 +237,8 @@ def _draw_obstacle(axes: Axes, name: str, solid: Solid, view: tuple[int, int], l
         alpha=0.75,
         zorder=0.5,
     )
-    labels.add(shortened(name, _LABEL, FONT_SIZE), outline.mean(axis=0))
+    middle = 0.5 * (outline.min(axis=0) + outline.max(axis=0))
+    labels.add(shortened(name, _LABEL, FONT_SIZE), middle)
 
 
 def _clipped(corners: FloatArray, frame: FloatArray) -> FloatArray:
