@@ -43,7 +43,7 @@ def test_each_release_is_enough_and_the_base_is_told_last():
     assert "longer (up to" in longer.sentence
     assert base.task.base.position[2] > 0.1
     # What is told is the place that does, to the last digit.
-    told = [float(each) for each in re.findall(r"[xyz] (-?\d+\.\d+)", base.sentence)]
+    told = [float(each) for each in re.findall(r"\b[xyz] (-?\d+\.\d+)", base.sentence)]
     assert base.task.base.position == pytest.approx(1e-3 * np.array(told), abs=1e-12)
 
 
