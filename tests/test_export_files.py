@@ -18,8 +18,8 @@ from pypdf import PdfReader
 from synth.errors import SynthError
 from synth.export import draw_sheet, markers_csv, prepare_directory, typesetting, write_files
 from synth.export.missed_page import fill_missed
+from synth.export.obstacle_outlines import clipped, solid_outline
 from synth.export.page import HEIGHT, WIDTH, Page
-from synth.export.scene import solid_outline
 from synth.geometry import Box, Capsule
 from synth.guide import make_guide
 from synth.robot import PRESETS, Arm, BasePose, Interval, JointLimits, LinkShape, MalleableLink
@@ -133,6 +133,19 @@ def test_the_outline_of_an_obstacle_is_what_a_view_shows_of_it(solid, view):
         direction[list(view)] = math.cos(angle), math.sin(angle)
         farthest = (outline @ direction[list(view)]).max()
         assert farthest == pytest.approx(solid.support(direction), abs=1e-9)
+
+
+def test_of_an_obstacle_a_view_shows_the_part_in_its_frame():
+    """A square on its tip, of half diagonal 1: in a frame that cuts off a corner 7/8 of it are left."""
+    square = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
+
+    def area(corners):
+        following = np.roll(corners, -1, axis=0)
+        return 0.5 * abs(np.sum(corners[:, 0] * following[:, 1] - corners[:, 1] * following[:, 0]))
+
+    assert area(clipped(square, np.array([[-2.0, 0.5], [-2.0, 2.0]]))) == pytest.approx(1.75)
+    assert area(clipped(square, np.array([[-0.5, 0.5], [-0.5, 0.5]]))) == pytest.approx(1.0)
+    assert len(clipped(square, np.array([[0.8, 2.0], [0.8, 2.0]]))) == 0  # beside it, though its box is not
 
 
 def test_a_shape_that_misses_says_so_in_large_letters_and_gives_no_instructions():

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.export.labels import FONT_SIZE, Labels
-from synth.export.typesetting import shortened
-from synth.geometry import Box
+from synth.export.labels import Labels
+from synth.export.obstacle_outlines import draw_obstacle, ends_of
 from synth.guide import MARKERS
 from synth.robot import BasePose
 
@@ -30,13 +29,11 @@ if TYPE_CHECKING:
 LINK, AXIS, TARGET, GHOST = "#0072B2", "#D55E00", "#000000", "#8C8C8C"
 # Which coordinates a view shows to the right and upwards: a third-angle projection.
 TOP, FRONT, SIDE = (0, 1), (0, 2), (1, 2)
-_LABEL = 33.0  # mm of paper, of an obstacle's name
 _POINTS_PER_MM = 72.0 / 25.4
 MOST_DRAWN = 1000  # targets, beside those that have a label: more cover each other
 _MOST_OF_LINK = 1000  # points of a very long link
 _AROUND = 120.0  # mm, how far obstacles are shown beyond the arm and its targets
 _FAR, _NEAR_SIDE = 250.0, 60.0  # mm; what begins farther off is not drawn, and of what does not this much
-_OUTLINE = 72  # directions in which the outline of an obstacle is looked for
 _AXIS_LENGTH = 9.0  # mm of paper to either side of the markers, drawn of an axis
 
 
@@ -126,14 +123,14 @@ class Scene:
         # Obstacles are shown as far as they are near, or their near side: a wall may be long.
         low, high = self._of_the_arm + np.array([[-_AROUND], [_AROUND]])
         for _, solid in self.obstacles:
-            ends = _ends(solid)
+            ends = ends_of(solid)
             lowest = np.minimum(lowest, np.maximum(ends[0], np.minimum(low, ends[1] - _NEAR_SIDE)))
             highest = np.maximum(highest, np.minimum(ends[1], np.maximum(high, ends[0] + _NEAR_SIDE)))
         return np.array([lowest, highest])
 
     def is_near(self, solid: Solid) -> bool:
         """Whether an obstacle is near enough to the arm and its targets to be drawn."""
-        ends, farthest = _ends(solid), self._of_the_arm + np.array([[-_FAR], [_FAR]])
+        ends, farthest = ends_of(solid), self._of_the_arm + np.array([[-_FAR], [_FAR]])
         return bool(np.all(ends[0] <= farthest[1]) and np.all(ends[1] >= farthest[0]))
 
     @property
@@ -146,11 +143,6 @@ class Scene:
         return np.array([points.min(axis=0) - margin, points.max(axis=0) + margin])
 
 
-def _ends(solid: Solid) -> FloatArray:
-    """Return the lowest and highest coordinates of a solid, shape (2, 3), mm."""
-    return 1e3 * np.array([-solid.support(-np.eye(3)), solid.support(np.eye(3))])
-
-
 def draw_view(axes: Axes, scene: Scene, view: tuple[int, int], scale: float) -> None:
     """Draw one orthographic view at a scale of 1 : `scale`; the axes' limits must be set."""
     labels, pick = Labels(axes, scale), list(view)
@@ -158,7 +150,7 @@ def draw_view(axes: Axes, scene: Scene, view: tuple[int, int], scale: float) -> 
     if scene.floor is not None and view != TOP:
         _draw_floor(axes, scene.floor)
     for name, solid in scene.obstacles:
-        _draw_obstacle(axes, name, solid, view, labels)
+        draw_obstacle(axes, name, solid, view, labels)
     for line, width in ((scene.ghost, tube), (scene.rigid, 0.5 * tube)):
         axes.plot(*line[:, pick].T, color="#E4E4E4", linewidth=width, solid_capstyle="butt", zorder=1)
         axes.plot(*line[:, pick].T, color=GHOST, linewidth=0.8, linestyle="--", zorder=1)
@@ -220,61 +212,6 @@ def _draw_floor(axes: Axes, height: float) -> None:
         bottom, height, facecolor="none", edgecolor="#C4C4C4", hatch="/////", linewidth=0.0, zorder=0
     )
     axes.axhline(height, color="black", linewidth=1.0, zorder=2)
-
-
-def _draw_obstacle(axes: Axes, name: str, solid: Solid, view: tuple[int, int], labels: Labels) -> None:
-    """Draw the outline of a convex solid, hatched, and name it in the middle of what is seen of it."""
-    frame = np.array([axes.get_xlim(), axes.get_ylim()])
-    outline = _clipped(1e3 * solid_outline(solid, view), frame)
-    if not len(outline):
-        return
-    axes.fill(
-        *outline.T,
-        facecolor="#F4EFE0",
-        edgecolor="#7A6A3A",
-        hatch="xxx",
-        linewidth=0.7,
-        alpha=0.75,
-        zorder=0.5,
-    )
-    middle = 0.5 * (outline.min(axis=0) + outline.max(axis=0))
-    labels.add(shortened(name, _LABEL, FONT_SIZE), middle)
-
-
-def _clipped(corners: FloatArray, frame: FloatArray) -> FloatArray:
-    """Return the corners of the part of a convex polygon, shape (k, 2), that is in a frame; none if none is.
-
-    Cut by one side of the frame, shape (2, 2), a row for each coordinate, after the other.
-    """
-    for axis, sign in itertools.product((0, 1), (1.0, -1.0)):
-        beyond = sign * corners[:, axis] - (frame[axis, 1] if sign > 0.0 else -frame[axis, 0])
-        kept = []
-        for index in range(len(corners)):
-            start, end = beyond[index - 1], beyond[index]
-            if start * end < 0.0:
-                share = start / (start - end)
-                kept.append(corners[index - 1] + share * (corners[index] - corners[index - 1]))
-            if end <= 0.0:
-                kept.append(corners[index])
-        corners = np.array(kept).reshape(-1, 2)
-    return corners
-
-
-def solid_outline(solid: Solid, view: tuple[int, int]) -> FloatArray:
-    """Return the corners of what a view shows of a convex solid, shape (k, 2), m, around it.
-
-    A box has the corner that is farthest in each of many directions; a capsule its ends, and the
-    radius about them.
-    """
-    angles = np.linspace(0.0, 2.0 * math.pi, _OUTLINE, endpoint=False)
-    around = np.column_stack([np.cos(angles), np.sin(angles)])
-    if isinstance(solid, Box):
-        half = np.array(list(itertools.product((-0.5, 0.5), repeat=3))) * solid.size
-        points = (BasePose(yaw=solid.yaw).to_task(half) + solid.centre)[:, list(view)]
-        radius = 0.0
-    else:
-        points, radius = solid.ends[:, list(view)], solid.radius
-    return np.asarray(points[np.argmax(around @ points.T, axis=1)] + radius * around)
 
 
 def _draw_axis(axes: Axes, points: FloatArray, pick: list[int], labels: Labels) -> None:
