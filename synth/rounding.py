@@ -7,8 +7,11 @@ will do is rounded up. "At least 274.6 mm" is false where 274.585 mm exists; "at
 from __future__ import annotations
 
 import math
-from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from enum import Enum
+
+_ANY_DOUBLE = Context(prec=400)  # digits: 308 before the point, and what follows it
+_MOST_DIGITS = 12  # decimals: finer than any limit is checked
 
 
 class Unit(Enum):
@@ -17,6 +20,7 @@ class Unit(Enum):
     MM = "mm", 1e3
     DEG = "deg", math.degrees(1.0)
     PERCENT = "%", 1e2
+    M = "m", 1.0
 
     @property
     def symbol(self) -> str:
@@ -60,8 +64,27 @@ def at_most(value: float, unit: Unit = Unit.MM, digits: int = 1) -> str:
     return f"at most {rounded_up(value, unit, digits)} {unit.symbol}"
 
 
+def told_apart(value: float, limit: float, unit: Unit = Unit.MM, digits: int = 1) -> tuple[str, str]:
+    """Return a value and the limit that it breaks, with as many decimals as it takes not to look alike.
+
+    Both are rounded towards each other: the value breaks the limit by no less than is shown.
+
+    Args:
+        value: In SI units, above the limit or below it.
+        limit: In SI units.
+        unit: What to tell them in.
+        digits: Decimals, if these tell them apart.
+    """
+    inward, outward = (rounded_down, rounded_up) if value > limit else (rounded_up, rounded_down)
+    for more in range(digits, _MOST_DIGITS):
+        told = inward(value, unit, more), outward(limit, unit, more)
+        if told[0] != told[1] and (float(told[0]) > float(told[1])) == (value > limit):
+            break
+    return told
+
+
 def _rounded(value: float, unit: Unit, digits: int, rounding: str) -> str:
     if not math.isfinite(value):
         return f"{value}"
-    number = unit.of(value).quantize(Decimal(1).scaleb(-digits), rounding=rounding)
-    return f"{number + 0:f}" if number else f"{abs(number):f}"  # no "-0.0"
+    number = unit.of(value).quantize(Decimal(1).scaleb(-digits), rounding, _ANY_DOUBLE)
+    return f"{number:f}" if number else f"{abs(number):f}"  # no "-0.0"

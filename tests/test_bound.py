@@ -356,6 +356,27 @@ def test_a_bound_is_told_on_the_safe_side_and_of_the_shape_shown():
     )
 
 
+def test_where_tolerances_differ_a_gap_is_one_of_weighted_misses():
+    """With tolerances of 1 and 2 mm a plain miss of 3 mm may be a weighted one of 1.5 mm."""
+    bound = Bound(1.0e-3, 1.5e-3, 1e-3, 7, weighted=True)
+    assert bound.sentence_of_shape(1.5e-3).endswith(
+        "the worst miss of this shape, each weighed by the tightest tolerance over its own, "
+        "is within 0.500 mm of the least there is"
+    )
+    task = noisy_task(2)
+    loose = replace(
+        task, targets=tuple(replace(t, tolerance=(1 + i) * 1e-3) for i, t in enumerate(task.targets))
+    )
+    told = []
+    misses = np.full(len(task.targets), 0.3)
+    for each in (task, loose):
+        watch = Watch(stop=lambda: len(told) > 5, report=told.append)
+        made = prove(each, 0.3, misses, tightest=float(each.tolerances.min()), watch=watch)
+        assert made.weighted == (each is loose)
+        assert (told[-1].worst_miss < np.inf) == (each is task)  # no plain miss, so none is told
+        told.clear()
+
+
 def test_a_gap_that_may_be_joint_1s_is_said_to_be_so():
     """Joint 1 turns by little, so every shape misses by far more than the bound, which leaves joint 1 out."""
     task = noisy_task(2)

@@ -4,6 +4,8 @@ import csv
 import io
 import json
 import math
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,15 +16,15 @@ from matplotlib.figure import Figure
 from pypdf import PdfReader
 
 from synth.errors import SynthError
-from synth.export import draw_sheet, markers_csv, prepare_directory, write_files
+from synth.export import draw_sheet, markers_csv, prepare_directory, typesetting, write_files
 from synth.export.missed_page import fill_missed
-from synth.export.names import shortened
+from synth.export.obstacle_outlines import clipped, solid_outline
 from synth.export.page import HEIGHT, WIDTH, Page
-from synth.export.scene import solid_outline
 from synth.geometry import Box, Capsule
 from synth.guide import make_guide
 from synth.robot import PRESETS, Arm, BasePose, Interval, JointLimits, LinkShape, MalleableLink
 from synth.synthesis import Design, Solution, Status, Timing, verify
+from synth.synthesis.motion import Motion
 from synth.task import Obstacle, PointTarget, Task
 
 ROBOT = PRESETS["malleable-2dof"]
@@ -105,13 +107,17 @@ def test_a_rigid_link_that_was_chosen_is_cut_first():
 def test_obstacles_are_drawn_and_named_with_the_clearance_at_each_target():
     obstacles = (
         Obstacle("the cabinet", Box([1.1, -0.2, 0.3], [0.2, 0.5, 0.6], 0.4)),
-        Obstacle("the pipe", Capsule([[-1.2, 0.0, 0.0], [-1.2, 0.0, 1.0]], 0.03)),
+        Obstacle("the pipe", Capsule([[-0.5, 0.5, 0.0], [-0.5, 0.5, 1.0]], 0.03)),
+        Obstacle("the door", Box([-3.0, 0.0, 1.0], [0.1, 1.0, 2.0])),
     )
     task = replace(SOLUTION.task, obstacles=obstacles)
     design = Design(SOLUTION.robot, verify(task, SOLUTION.robot))
     assert design.verification.found
     text = text_of(replace(SOLUTION, task=task, designs=(design,)))
     assert text.count("the cabinet") == text.count("the pipe") == 3  # in each view
+    # What no view shows has no label there: the legend says that there is more.
+    assert text.count("the door") == 1
+    assert "Too far off to be drawn: the door." in " ".join(text.split())
     assert "clear, mm" in text
     assert "obstacles" in text
 
@@ -127,6 +133,19 @@ def test_the_outline_of_an_obstacle_is_what_a_view_shows_of_it(solid, view):
         direction[list(view)] = math.cos(angle), math.sin(angle)
         farthest = (outline @ direction[list(view)]).max()
         assert farthest == pytest.approx(solid.support(direction), abs=1e-9)
+
+
+def test_of_an_obstacle_a_view_shows_the_part_in_its_frame():
+    """A square on its tip, of half diagonal 1: in a frame that cuts off a corner 7/8 of it are left."""
+    square = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
+
+    def area(corners):
+        following = np.roll(corners, -1, axis=0)
+        return 0.5 * abs(np.sum(corners[:, 0] * following[:, 1] - corners[:, 1] * following[:, 0]))
+
+    assert area(clipped(square, np.array([[-2.0, 0.5], [-2.0, 2.0]]))) == pytest.approx(1.75)
+    assert area(clipped(square, np.array([[-0.5, 0.5], [-0.5, 0.5]]))) == pytest.approx(1.0)
+    assert len(clipped(square, np.array([[0.8, 2.0], [0.8, 2.0]]))) == 0  # beside it, though its box is not
 
 
 def test_a_shape_that_misses_says_so_in_large_letters_and_gives_no_instructions():
@@ -181,20 +200,6 @@ def test_long_and_many_reasons_push_the_table_down():
     assert "and 25 more of this kind" in [text.get_text() for text in figure.texts]
 
 
-@pytest.mark.parametrize(
-    ("name", "most", "shown"),
-    [
-        ("crate", 24, "crate"),
-        ("a" * 30 + "17", 24, "a" * 11 + "..." + "a" * 8 + "17"),
-        ("left side of the bin, upper 3", 12, "left...er 3"),
-        ("two\n lines", 24, "two lines"),
-    ],
-)
-def test_a_long_name_keeps_its_beginning_and_its_end(name, most, shown):
-    assert shortened(name, most) == shown
-    assert len(shown) <= most
-
-
 def test_names_of_one_long_word_can_be_read_on_the_sheet():
     solution = make_solution(name="Werkstueckaufnahmevorrichtungspositionierung_Halle_7_Nord")
     targets = tuple(
@@ -202,10 +207,56 @@ def test_names_of_one_long_word_can_be_read_on_the_sheet():
     )
     task = replace(solution.task, targets=targets)
     text = text_of(replace(solution, task=task))
-    assert "Werkstueckaufnahmevorr..." in text
-    assert "Halle_7_Nord" in text
+    assert "Werkstueckaufnahmevorrich...itionierung_Halle_7_Nord" in text
     for index in range(3):
-        assert f"Schraubenlo...nkt_oben_{index}" in text
+        assert f"Schraubenl...kt_oben_{index}" in text
+
+
+def test_a_name_in_any_script_prints_no_boxes(monkeypatch):
+    """A sign that no font has is spelled, in every place of the sheet, and no library warns of it."""
+    monkeypatch.setattr(typesetting, "_others", list)
+    typesetting._family.cache_clear()
+    typesetting._drawable.cache_clear()
+    solution = make_solution(name="机器人 \N{ROBOT FACE}")
+    targets = tuple(replace(t, name=f"箱 {i}") for i, t in enumerate(solution.task.targets))
+    wall = Obstacle("墙", Box([0.9, -0.2, 0.3], [0.2, 0.5, 0.6]))
+    task = replace(solution.task, targets=targets, obstacles=(wall,))
+    text = words_of(
+        replace(solution, task=task, designs=(Design(solution.robot, verify(task, solution.robot)),))
+    )
+    assert r"\u673a\u5668\u4eba [robot face]" in text
+    assert r"\u7bb1 0" in text
+    assert text.count(r"\u5899") == 3
+    typesetting._family.cache_clear()
+    typesetting._drawable.cache_clear()
+
+
+def test_the_sheet_of_a_task_that_was_explained_does_not_send_the_user_there_again():
+    missed = make_solution(offset=0.4)
+    advice = "solving with --why looks for one limit"
+    assert advice in words_of(missed)
+    note = "neither one limit relaxed alone nor another place of the base was found that would do"
+    told = words_of(replace(missed, explained=True, notes=(note,)))
+    assert advice not in told
+    assert note in told
+
+
+def test_the_sheet_of_a_task_without_a_way_says_so_first():
+    ways = (Motion("t0", "t1", np.zeros((0, 2))), Motion("t1", "t2", np.zeros((2, 2))))
+    text = words_of(replace(SOLUTION, designs=(replace(SOLUTION.best, ways=ways),)))
+    assert "Found: every target is reached, but no way was found from t0 to t1." in text
+
+
+def test_to_draw_a_sheet_loads_no_more_than_it_takes():
+    """To cut fonts to size, which no sheet does, takes a library that is as slow to load as all others."""
+    told = (
+        "import sys, test_export_files as t; t.draw_sheet(t.SOLUTION, t.GUIDE); "
+        "print([name for name in ('fontTools.varLib', 'matplotlib.pyplot') if name in sys.modules])"
+    )
+    answer = subprocess.run(
+        [sys.executable, "-c", told], capture_output=True, text=True, check=True, cwd=Path(__file__).parent
+    )
+    assert answer.stdout == "[]\n"
 
 
 def test_a_solution_without_a_shape_has_a_sheet_and_no_points():

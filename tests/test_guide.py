@@ -13,13 +13,15 @@ from synth.errors import SynthError
 from synth.geometry import Box, Sphere
 from synth.guide import MARKERS, guide_text, instructions, make_guide, solution_text, summary_text
 from synth.guide.guide import SPACING, place
-from synth.guide.instructions import axis_sentence, hold_sentence, tolerance_sentences
+from synth.guide.instructions import axis_sentence, hold_sentence, link_sentence, tolerance_sentences
 from synth.guide.posture import hold_posture
 from synth.guide.sensitivity import ShapeTolerance, shape_tolerance, tilt_rate
+from synth.guide.text import help_told
 from synth.robot import PRESETS, Arm, ArmBody, BasePose, Interval, JointLimits, LinkShape
 from synth.robot.closest import closest_joints
 from synth.robot.kinematics import Kinematics
 from synth.synthesis import Bound, Design, Release, Solution, Status, Timing, showing, verify
+from synth.synthesis.motion import Motion
 from synth.task import DEFAULT_TOLERANCE, Obstacle, PointTarget, Task
 
 ROBOT = PRESETS["malleable-2dof"]
@@ -421,3 +423,44 @@ def test_a_joint_that_turns_all_round_has_no_limit_at_its_end():
         point = arm.forward_kinematics(theta1, 2.0)
         rate = tilt_rate(arm, point, np.array([theta1, 2.0]))
         assert rate == pytest.approx(tilt_rate(arm, arm.forward_kinematics(0.0, 2.0), np.array([0.0, 2.0])))
+
+
+def test_a_task_that_is_missed_tells_what_would_help():
+    task, design = make_design(ARM, JOINTS, np.full((3, 3), 0.1))
+    missed = replace(SOLUTION, task=task, designs=(design,), status=Status.BEST_EFFORT)
+    told = help_told(missed)
+    worst = 1e3 * design.verification.misses.max()
+    tolerance = float(
+        re.search(r"tolerances of ([\d.]+) mm would be met by the nearest shape found", told[0])[1]
+    )
+    assert worst <= tolerance < worst + 0.01
+    # That is true: with such tolerances the same shape is found to do.
+    loose = replace(task, targets=tuple(replace(t, tolerance=1e-3 * tolerance) for t in task.targets))
+    assert verify(loose, design.arm, design.verification.joints).found
+    assert ["--why" in each for each in told[1:]] == [True, False]
+    assert "--prove" in told[2]
+    assert all(f"• {each}" in summary_text(missed).splitlines() for each in told)
+    stopped = help_told(replace(missed, status=Status.LIMIT, explained=True))
+    assert "more time may find a shape" in stopped
+    assert not any("--why" in each for each in stopped)
+    impossible = help_told(replace(missed, status=Status.PROVEN_IMPOSSIBLE))
+    assert len(impossible) == 1  # no tolerance is promised, and nothing is left to prove
+    assert help_told(SOLUTION) == []
+
+
+def test_a_straight_link_is_told_as_one_without_a_bend():
+    straight = link_sentence(LinkShape([[1e-4, 0.0]], [0.6]))
+    assert straight == "link 600.0 mm long, as good as straight"
+
+
+def test_a_radius_to_bend_no_tighter_than_is_never_told_too_small():
+    robot = replace(ARM.robot, link=replace(ARM.robot.link, min_bend_radius=0.10004))
+    told = " ".join(instructions(replace(GUIDE, arm=replace(ARM, robot=robot))))
+    assert "nowhere tighter than to a radius of 100.1 mm" in told
+
+
+def test_the_headline_of_a_shape_without_a_way_says_so():
+    ways = (Motion("a", "b", np.zeros((0, 2))),)
+    design = replace(SOLUTION.best, ways=ways)
+    headline = summary_text(replace(SOLUTION, designs=(design,))).splitlines()[0]
+    assert headline.endswith(": every target is reached, but no way was found from a to b")

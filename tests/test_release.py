@@ -1,6 +1,7 @@
 """What blocks a task is named, by how much, and what is named does release it."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 from planted_blocked import blocked_task
 
 from synth.export import solution_to_json
-from synth.guide import solution_text
+from synth.guide import help_told, solution_text
 from synth.robot import PRESETS
 from synth.synthesis import explain, release, solve, verify
 from synth.synthesis.solve import follow
@@ -39,8 +40,11 @@ def test_each_release_is_enough_and_the_base_is_told_last():
     # 1277.7 mm from P2 to the shelf, 1156.9 mm of robot, 1 mm of tolerance
     assert 0.1198 < longer.amount < 0.1250
     assert 0.1198 < base.amount < 0.1250
-    assert "longer, up to" in longer.sentence
+    assert "longer (up to" in longer.sentence
     assert base.task.base.position[2] > 0.1
+    # What is told is the place that does, to the last digit.
+    told = [float(each) for each in re.findall(r"\b[xyz] (-?\d+\.\d+)", base.sentence)]
+    assert base.task.base.position == pytest.approx(1e-3 * np.array(told), abs=1e-12)
 
 
 def test_nothing_blocks_what_was_found():
@@ -114,10 +118,31 @@ def test_where_no_limit_helps_it_says_so_and_how_near_any_surface_passes(monkeyp
     (note,) = explained.notes
     assert "neither one limit relaxed alone" in note
     assert "surface of revolution about axis 1" in note
-    miss = float(re.search(r"misses one by (\d+\.\d\d) mm", note).group(1))
+    miss = float(re.search(r"misses none by more than (\d+\.\d\d) mm", note).group(1))
     assert 1.0 < miss < 200.0
     assert note in solution_text(explained)
     assert solution_to_json(explained)["notes"] == [note]
+    # The sheet tells what was found out, and no longer to find it out.
+    assert "--why" in help_told(solution)[1]
+    assert note in help_told(explained)
+    assert not any("--why" in each for each in help_told(explained))
+
+
+def test_that_no_surface_passes_is_called_proven_only_where_algebra_proves_it(monkeypatch):
+    solution = solved(six_targets_of_no_arm())
+    monkeypatch.setattr(release, "_released", lambda *_: None)
+    monkeypatch.setattr(release, "_base_moved", lambda *_: None)
+    assert "none was found that passes through all the targets" in explain(solution).notes[0]
+    monkeypatch.setattr(release, "exact_designs", lambda _: ())
+    assert "by algebra none passes exactly through all the targets" in explain(solution).notes[0]
+
+
+def test_where_no_shape_at_all_is_left_it_says_that_too(monkeypatch):
+    solution = solved(six_targets_of_no_arm())
+    monkeypatch.setattr(release, "_released", lambda *_: None)
+    monkeypatch.setattr(release, "_base_moved", lambda *_: None)
+    monkeypatch.setattr(release, "follow", lambda *_, **__: replace(solution, designs=()))
+    assert explain(solution).notes[0].endswith("nor any shape at all with all limits relaxed together")
 
 
 def test_where_several_limits_block_together_it_says_that(monkeypatch):

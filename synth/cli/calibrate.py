@@ -12,6 +12,7 @@ from synth.export.calibration_json import calibration_to_json
 from synth.measurement import StandingArm, sigma_of
 from synth.measurement.calibration import calibrate
 from synth.measurement.marker_file import load_points
+from synth.rounding import rounded_up
 from synth.task.solution_file import load_shapes
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ def calibrate_file(
         say(f"{task.name}: {found.refusal}")
     else:
         say(
-            f"{task.name}: the surface is known to {math.ceil(1e5 * found.surface_rms) / 100:.2f} mm root "
+            f"{task.name}: the surface is known to {rounded_up(found.surface_rms, digits=2)} mm root "
             "mean square, "
             f"from {content['points_used']} points"
         )
@@ -56,7 +57,7 @@ def calibrate_file(
                 else "joint 1 {:.2f} deg, joint 2 {:.2f} deg; ".format(*map(math.degrees, target["joints"]))
             )
             say(
-                f"• {target['name']}: {angles}miss below {math.ceil(1e5 * target['miss_95']) / 100:.2f} "
+                f"• {target['name']}: {angles}miss below {rounded_up(target['miss_95'], digits=2)} "
                 "mm in 19 of 20 cases"
             )
     return ExitCode.NOT_MET if found.refusal else ExitCode.DONE

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, TypeVar
 from synth.cli.exit_codes import ExitCode
 from synth.cli.say import say
 from synth.errors import SolverError, SynthError, in_a_line
+from synth.rounding import at_least, at_most
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -168,7 +169,7 @@ def progress_sentence(progress: Progress) -> str:
     """Return how far a run is, for a line on the terminal."""
     parts = [progress.phase] if progress.phase else []
     if progress.worst_miss < float("inf"):
-        parts.append(f"best shape misses by {1e3 * progress.worst_miss:.3f} mm at most")
+        parts.append(f"best shape misses by {at_most(progress.worst_miss, digits=3)}")
     if progress.lower_bound is not None:
-        parts.append(f"every shape by {1e3 * progress.lower_bound:.3f} mm")
+        parts.append(f"every shape by {at_least(progress.lower_bound, digits=3)}")
     return ", ".join(parts) or "looking at many shapes"

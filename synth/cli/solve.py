@@ -70,7 +70,11 @@ def solve_file(
             solution = session.attempt(
                 "looking for what would release the task",
                 lambda: explain(found, time_limit=session.for_search, stop=session.stop, progress=progress),
-                replace(found, notes=(*found.notes, "what would release the task was not found out")),
+                replace(
+                    found,
+                    explained=True,
+                    notes=(*found.notes, "what would release the task was not found out"),
+                ),
             )
         if shape != 1:
             solution = showing(solution, shape)

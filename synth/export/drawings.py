@@ -10,6 +10,7 @@ import numpy as np
 from synth.export.labels import FONT_SIZE
 from synth.export.page import HEIGHT, MARGIN, WIDTH
 from synth.export.scene import FRONT, SIDE, TOP, draw_section, draw_view, section
+from synth.export.typesetting import shortened
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from synth.synthesis import Solution
 
 # Millimetres of paper.
+_NAME = 35.0  # of an obstacle in the legend
 _ROOM_FOR_A_NOTE = 50.0  # beside the title of the section
 _TICKS, _GAP_X, _GAP_Y = 10.0, 15.0, 13.0  # room for the numbers on the axes
 _LEAST_VIEW = 0.42  # of the room in height, for a side of the square in the corner
@@ -63,13 +65,17 @@ def draw(page: Page, solution: Solution, scene: Scene, top: float) -> None:
     shape = "Outlined: link at the angle to hold. Dashed: arm at target 1. " if scene.hold is not None else ""
     if solution.designs and scene.hold is None:
         shape = "Dashed: the nearest shape found, at target 1; it misses, so do not bend the link to it. "
+    axes_drawn = "axes of the joints" if scene.hold is not None else "axis of joint 1"
     obstacles = "Hatched crosswise: obstacles, not in the section. " if scene.obstacles else ""
-    legend = f"{shape}{obstacles}Dash-dotted: axes of the joints. Dot: target reached; cross: missed." + (
+    if scene.far_obstacles:
+        names = ", ".join(shortened(name, _NAME, FONT_SIZE) for name in scene.far_obstacles)
+        obstacles += f"Too far off to be drawn: {names}. "
+    legend = f"{shape}{obstacles}Dash-dotted: {axes_drawn}. Dot: target reached; cross: missed." + (
         " Section: ρ is the distance from axis 1; solid within the limits of joint 2, dashed beyond."
         if solution.designs
         else ""
     )
-    page.paragraph(MARGIN, HEIGHT - 8.0, legend, 152, pitch=3.0, size=FONT_SIZE)
+    page.paragraph(MARGIN, HEIGHT - 9.0, legend, WIDTH - 2 * MARGIN, pitch=2.8, size=FONT_SIZE, most=3)
 
 
 def _section(page: Page, solution: Solution, scene: Scene, square: tuple[float, float, float]) -> None:

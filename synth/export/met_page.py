@@ -6,10 +6,11 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from synth.export.names import shortened
-from synth.export.page import MARGIN
+from synth.export.page import MARGIN, WIDTH
 from synth.export.target_table import target_table
+from synth.export.typesetting import shortened
 from synth.guide import base_sentence, instructions
+from synth.synthesis.verdict import ending
 
 if TYPE_CHECKING:
     from synth.export.page import Page
@@ -21,14 +22,16 @@ _BODY = 44.0  # where the tables begin
 _COLUMN = 90.0  # where the right column begins
 _POINTS_HEIGHT, _POINT_PITCH = 62.0, 4.2
 _MOST_POINTS = 19
-_WAYS = 132.0  # where the ways begin, right of the targets
+_WAYS, _WAYS_SIZE = 128.0, 6.5  # where the ways begin, right of the targets; pt
 _MOST_WAYS = 6
-_NAME = 18  # characters of a target
+_NAME = 25.0  # of a target
 
 
 def fill_met(page: Page, solution: Solution, guide: Guide) -> float:
     """Write all but the drawings; return how far down it goes, mm."""
-    page.text(MARGIN, 25.5, f"Found: {solution.status.sentence}.", 10.0)
+    missing = any(not way.found for way in guide.ways)
+    told, weight = f"Found: {ending(solution.status, solution.designs)}.", "bold" if missing else "normal"
+    page.paragraph(MARGIN, 25.5, told, WIDTH - 2 * MARGIN, size=10.0, most=1, weight=weight)
     page.text(MARGIN, 31.0, f"Kind of shape: {guide.arm.category_distances.describe()}.", 7.5)
     page.text(MARGIN, 35.5, base_sentence(guide.arm.base), 7.5)
     bottom = max(_points(page, guide), _steps(page, guide)) + 5.5
@@ -62,13 +65,14 @@ def _steps(page: Page, guide: Guide) -> float:
     y = _BODY + 5.0
     for number, step in enumerate(instructions(guide), start=1):
         page.text(_COLUMN, y, str(number), 7.0, weight="bold")
-        y = page.paragraph(_COLUMN + 4.0, y, step, 77, pitch=3.35, size=7.0) + 0.7
+        y = page.paragraph(_COLUMN + 4.0, y, step, WIDTH - MARGIN - _COLUMN - 4.0, pitch=3.35, size=7.0) + 0.7
     return y
 
 
 def _short(way: Motion) -> Motion:
     """Return a way between targets of shorter names."""
-    return replace(way, start=shortened(way.start, _NAME), end=shortened(way.end, _NAME))
+    start, end = (shortened(name, _NAME, _WAYS_SIZE) for name in (way.start, way.end))
+    return replace(way, start=start, end=end)
 
 
 def _ways(page: Page, y: float, guide: Guide) -> float:
@@ -77,13 +81,12 @@ def _ways(page: Page, y: float, guide: Guide) -> float:
         return y
     page.text(_WAYS, y, "Ways", 9.5, weight="bold")
     y += 4.2
+    room = WIDTH - MARGIN - _WAYS
     ways = sorted(guide.ways, key=lambda way: way.found)
     for way in ways[:_MOST_WAYS]:
-        weight = "normal" if way.found else "bold"
-        y = (
-            page.paragraph(_WAYS, y, _short(way).describe(), 56, most=4, pitch=3.1, size=6.5, weight=weight)
-            + 0.4
-        )
+        weight, told = "normal" if way.found else "bold", _short(way).describe().replace(" deg", "°")
+        y = page.paragraph(_WAYS, y, told, room, most=4, pitch=3.1, size=_WAYS_SIZE, weight=weight) + 0.4
     if len(ways) > _MOST_WAYS:
-        y = page.paragraph(_WAYS, y, f"and {len(ways) - _MOST_WAYS} more: see solution.json", 50, size=6.5)
+        told = f"and {len(ways) - _MOST_WAYS} more: see solution.json"
+        y = page.paragraph(_WAYS, y, told, room, size=_WAYS_SIZE)
     return y

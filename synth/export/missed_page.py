@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from synth.export.page import MARGIN, WIDTH
 from synth.export.target_table import target_table
-from synth.guide import proof_sentence, reasons_told
+from synth.export.typesetting import width
+from synth.guide import help_told, proof_sentence, reasons_told
 from synth.synthesis import Status
 
 if TYPE_CHECKING:
@@ -17,8 +19,8 @@ if TYPE_CHECKING:
 
 # Millimetres on the page.
 _BANNER, _BODY = 21.0, 37.0
-_BANNER_SIZE, _BANNER_CHARACTERS = 12.0, 64  # pt, and how many characters of it fit
-_PITCH, _CHARACTERS = 3.6, 126
+_BANNER_SIZE = 12.0  # pt, at most
+_PITCH = 3.6
 _MOST_LINES = 3  # of one reason
 _MOST_REASONS, _MOST_RELEASES = 5, 5
 
@@ -39,7 +41,7 @@ def _banner(page: Page, solution: Solution) -> None:
     word = "IMPOSSIBLE" if solution.status is Status.PROVEN_IMPOSSIBLE else "NOT FOUND"
     told = f"{word}: {solution.status.sentence}"
     page.band(MARGIN, _BANNER, WIDTH - 2 * MARGIN, 9.0, "black")
-    size = _BANNER_SIZE * min(1.0, _BANNER_CHARACTERS / len(told))
+    size = _BANNER_SIZE * min(1.0, (WIDTH - 2 * MARGIN - 6.0) / width(told, _BANNER_SIZE, bold=True))
     page.text(MARGIN + 3.0, _BANNER + 6.2, told, size, color="white", weight="bold")
 
 
@@ -50,10 +52,9 @@ def _why(solution: Solution) -> list[str]:
 
 
 def _help(solution: Solution) -> list[str]:
-    told = [f"{release.sentence} would do." for release in solution.releases[:_MOST_RELEASES]]
-    return told or [
-        "`synth solve --why` looks for one limit that, if it gave way, would let the task be met."
-    ]
+    """Return the releases, of many the first, and what else is to be said."""
+    few = replace(solution, releases=solution.releases[:_MOST_RELEASES])
+    return help_told(few)
 
 
 def _list(page: Page, y: float, heading: str, lines: Sequence[str]) -> float:
@@ -64,5 +65,10 @@ def _list(page: Page, y: float, heading: str, lines: Sequence[str]) -> float:
     y += 4.6
     for line in lines:
         page.text(MARGIN, y, "•", 7.0)
-        y = page.paragraph(MARGIN + 3.0, y, line, _CHARACTERS, most=_MOST_LINES, pitch=_PITCH, size=7.0) + 0.3
+        y = (
+            page.paragraph(
+                MARGIN + 3.0, y, line, WIDTH - 2 * MARGIN - 3.0, most=_MOST_LINES, pitch=_PITCH, size=7.0
+            )
+            + 0.3
+        )
     return y + 2.6

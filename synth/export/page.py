@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-import textwrap
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
-from unicodedata import east_asian_width
 
 import numpy as np
 
 from synth.export.labels import FONT_SIZE
+from synth.export.typesetting import families, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,7 +19,6 @@ if TYPE_CHECKING:
 
 WIDTH, HEIGHT, MARGIN = 210.0, 297.0, 13.0  # A4
 _LINE = 3.9  # from one line of a paragraph to the next
-_SECOND_HALF = "\ue000"  # of the private use area: no text has it
 _APART = (13.0, 10.0)  # at least, of the numbers along an axis: across, up
 _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 
@@ -33,7 +31,7 @@ class Page:
 
     def text(self, x: float, y: float, text: str, size: float = 8.0, **style: Any) -> None:
         """Write a line with its left end (or what `ha` says) on the baseline at (x, y)."""
-        style = {"ha": "left", "va": "baseline", **style}
+        style = {"ha": "left", "va": "baseline", "family": families(text), **style}
         self.figure.text(x / WIDTH, 1.0 - y / HEIGHT, text, fontsize=size, **style)
 
     def paragraph(
@@ -41,18 +39,16 @@ class Page:
         x: float,
         y: float,
         text: str,
-        width: int,
+        width: float,
         *,
+        size: float,
         most: int | None = None,
         pitch: float = _LINE,
         **style: Any,
     ) -> float:
-        """Write lines of at most `width` characters, no more than `most`; return where the next line goes."""
-        # A character of twice the width counts twice: a stand-in follows it while the lines are broken.
-        doubled = "".join(each + _SECOND_HALF * (east_asian_width(each) in "WF") for each in text)
-        lines = textwrap.wrap(doubled, width, break_on_hyphens=False, max_lines=most, placeholder=" ...")
-        for line in lines:
-            self.text(x, y, line.replace(_SECOND_HALF, ""), **style)
+        """Write lines no wider than `width`, mm, no more than `most`; return where the next line goes."""
+        for line in wrapped(text, width, size, most=most, bold=style.get("weight") == "bold"):
+            self.text(x, y, line, size, **style)
             y += pitch
         return y
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from synth.export.labels import Labels
-from synth.export.names import shortened
-from synth.geometry import Box
+from synth.export.obstacle_outlines import draw_obstacle, ends_of
 from synth.guide import MARKERS
 from synth.robot import BasePose
 
@@ -30,13 +29,12 @@ if TYPE_CHECKING:
 LINK, AXIS, TARGET, GHOST = "#0072B2", "#D55E00", "#000000", "#8C8C8C"
 # Which coordinates a view shows to the right and upwards: a third-angle projection.
 TOP, FRONT, SIDE = (0, 1), (0, 2), (1, 2)
-_LABEL = 24  # characters of an obstacle's name
 _POINTS_PER_MM = 72.0 / 25.4
 MOST_DRAWN = 1000  # targets, beside those that have a label: more cover each other
 _MOST_OF_LINK = 1000  # points of a very long link
 _AROUND = 120.0  # mm, how far obstacles are shown beyond the arm and its targets
-_OUTLINE = 72  # directions in which the outline of an obstacle is looked for
-_AXIS_LENGTH = 120.0  # mm to either side of the markers, drawn of an axis
+_FAR, _NEAR_SIDE = 250.0, 60.0  # mm; what begins farther off is not drawn, and of what does not this much
+_AXIS_LENGTH = 9.0  # mm of paper to either side of the markers, drawn of an axis
 
 
 @dataclass(frozen=True)
@@ -49,7 +47,8 @@ class Scene:
         labels: A label for each target, or "" for those that have none.
         base: P1 and P2, shape (2, 3).
         floor: Height of the floor, or None.
-        obstacles: Name and solid of each obstacle, in the task frame and in m.
+        obstacles: Name and solid of each obstacle that is near, in the task frame and in m.
+        far_obstacles: Names of those that are too far off to be drawn.
         hold: The points at the hold angle of joint 1, or None without a shape to bend the link to.
         link: Centreline at that angle, shape (k, 3).
         diameter: Outer diameter of the link.
@@ -63,6 +62,7 @@ class Scene:
     base: FloatArray
     floor: float | None
     obstacles: Sequence[tuple[str, Solid]]
+    far_obstacles: Sequence[str]
     hold: Placement | None
     link: FloatArray
     diameter: float
@@ -86,18 +86,26 @@ class Scene:
             if guide.met:
                 hold = guide.hold
                 link = 1e3 * base.to_task(BasePose(yaw=hold.joint1).to_task(centreline))
-        return cls(
+        scene = cls(
             targets=1e3 * task.table.positions,
             reached=reached,
             labels=labels,
             base=1e3 * base.to_task([[0.0, 0.0, 0.0], [0.0, 0.0, task.robot.d12]]),
             floor=None if task.floor is None else 1e3 * (task.floor + base.position[2]),
-            obstacles=[(obstacle.name, obstacle.solid) for obstacle in task.obstacles],
+            obstacles=[],
+            far_obstacles=[],
             hold=hold,
             link=link,
             diameter=1e3 * task.robot.link.diameter,
             ghost=ghost,
             rigid=rigid,
+        )
+        near = [scene.is_near(obstacle.solid) for obstacle in task.obstacles]
+        named = [(obstacle.name, obstacle.solid) for obstacle in task.obstacles]
+        return replace(
+            scene,
+            obstacles=list(itertools.compress(named, near)),
+            far_obstacles=[name for (name, _), drawn in zip(named, near, strict=True) if not drawn],
         )
 
     @property
@@ -111,19 +119,28 @@ class Scene:
     @property
     def bounds(self) -> FloatArray:
         """Lowest and highest coordinates of all that is shown, shape (2, 3), with a margin."""
+        lowest, highest = self._of_the_arm
+        # Obstacles are shown as far as they are near, or their near side: a wall may be long.
+        low, high = self._of_the_arm + np.array([[-_AROUND], [_AROUND]])
+        for _, solid in self.obstacles:
+            ends = ends_of(solid)
+            lowest = np.minimum(lowest, np.maximum(ends[0], np.minimum(low, ends[1] - _NEAR_SIDE)))
+            highest = np.maximum(highest, np.minimum(ends[1], np.maximum(high, ends[0] + _NEAR_SIDE)))
+        return np.array([lowest, highest])
+
+    def is_near(self, solid: Solid) -> bool:
+        """Whether an obstacle is near enough to the arm and its targets to be drawn."""
+        ends, farthest = ends_of(solid), self._of_the_arm + np.array([[-_FAR], [_FAR]])
+        return bool(np.all(ends[0] <= farthest[1]) and np.all(ends[1] >= farthest[0]))
+
+    @property
+    def _of_the_arm(self) -> FloatArray:
+        """The bounds of all but the obstacles."""
         points = np.vstack([self.targets, self.base, self.link, self.ghost, self.rigid])
         if self.floor is not None:
             points = np.vstack([points, [*points[0, :2], self.floor]])
         margin = 0.5 * self.diameter + 0.05 * float(np.ptp(points, axis=0).max())
-        lowest, highest = points.min(axis=0) - margin, points.max(axis=0) + margin
-        # Obstacles are shown as far as they are near: a wall may be long.
-        farthest = np.array([lowest, highest]) + np.array([[-_AROUND], [_AROUND]])
-        for _, solid in self.obstacles:
-            ends = 1e3 * np.array([-solid.support(-np.eye(3)), solid.support(np.eye(3))])
-            if np.all(ends[0] <= farthest[1]) and np.all(ends[1] >= farthest[0]):
-                lowest = np.minimum(lowest, np.maximum(ends[0], farthest[0]))
-                highest = np.maximum(highest, np.minimum(ends[1], farthest[1]))
-        return np.array([lowest, highest])
+        return np.array([points.min(axis=0) - margin, points.max(axis=0) + margin])
 
 
 def draw_view(axes: Axes, scene: Scene, view: tuple[int, int], scale: float) -> None:
@@ -133,7 +150,7 @@ def draw_view(axes: Axes, scene: Scene, view: tuple[int, int], scale: float) -> 
     if scene.floor is not None and view != TOP:
         _draw_floor(axes, scene.floor)
     for name, solid in scene.obstacles:
-        _draw_obstacle(axes, name, solid, view, labels)
+        draw_obstacle(axes, name, solid, view, labels)
     for line, width in ((scene.ghost, tube), (scene.rigid, 0.5 * tube)):
         axes.plot(*line[:, pick].T, color="#E4E4E4", linewidth=width, solid_capstyle="butt", zorder=1)
         axes.plot(*line[:, pick].T, color=GHOST, linewidth=0.8, linestyle="--", zorder=1)
@@ -197,42 +214,9 @@ def _draw_floor(axes: Axes, height: float) -> None:
     axes.axhline(height, color="black", linewidth=1.0, zorder=2)
 
 
-def _draw_obstacle(axes: Axes, name: str, solid: Solid, view: tuple[int, int], labels: Labels) -> None:
-    """Draw the outline of a convex solid, hatched, and name it in the middle of what is seen of it."""
-    outline = 1e3 * solid_outline(solid, view)
-    axes.fill(
-        *outline.T,
-        facecolor="#F4EFE0",
-        edgecolor="#7A6A3A",
-        hatch="xxx",
-        linewidth=0.7,
-        alpha=0.75,
-        zorder=0.5,
-    )
-    frame = np.array([axes.get_xlim(), axes.get_ylim()])
-    labels.add(shortened(name, _LABEL), np.clip(outline, frame[:, 0], frame[:, 1]).mean(axis=0))
-
-
-def solid_outline(solid: Solid, view: tuple[int, int]) -> FloatArray:
-    """Return the corners of what a view shows of a convex solid, shape (k, 2), m, around it.
-
-    A box has the corner that is farthest in each of many directions; a capsule its ends, and the
-    radius about them.
-    """
-    angles = np.linspace(0.0, 2.0 * math.pi, _OUTLINE, endpoint=False)
-    around = np.column_stack([np.cos(angles), np.sin(angles)])
-    if isinstance(solid, Box):
-        half = np.array(list(itertools.product((-0.5, 0.5), repeat=3))) * solid.size
-        points = (BasePose(yaw=solid.yaw).to_task(half) + solid.centre)[:, list(view)]
-        radius = 0.0
-    else:
-        points, radius = solid.ends[:, list(view)], solid.radius
-    return np.asarray(points[np.argmax(around @ points.T, axis=1)] + radius * around)
-
-
 def _draw_axis(axes: Axes, points: FloatArray, pick: list[int], labels: Labels) -> None:
     """Draw the axis of a joint through two points, shape (2, 3), and some way beyond them."""
-    beyond = _AXIS_LENGTH / np.linalg.norm(points[1] - points[0]) * (points[1] - points[0])
+    beyond = _AXIS_LENGTH * labels.scale / np.linalg.norm(points[1] - points[0]) * (points[1] - points[0])
     line = np.stack([points[0] - beyond, points[1] + beyond])[:, pick]
     axes.plot(*line.T, color=AXIS, linewidth=1.1, linestyle="-.", zorder=5)
     labels.avoid_line(line)

@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 import io
-import warnings
+import sys
+from importlib.util import LazyLoader, find_spec, module_from_spec
 from typing import TYPE_CHECKING
 
 from synth.export.drawings import draw
 from synth.export.met_page import fill_met
 from synth.export.missed_page import fill_missed
-from synth.export.names import shortened
 from synth.export.page import HEIGHT, MARGIN, WIDTH, Page
 from synth.export.scene import Scene
 from synth.export.target_table import listed_targets
+from synth.export.typesetting import FAMILY, shortened
 from synth.version import __version__
 
 if TYPE_CHECKING:
     from synth.guide import Guide
     from synth.synthesis import Solution
 
-_NAME = 46  # characters of the task's name
+_TITLE = 16.0  # pt
+_ROBOT = 60.0  # mm, of its name
 _FARTHEST_DOWN = 178.0  # mm; the drawings begin no lower
 
 
@@ -40,21 +42,33 @@ def draw_sheet(solution: Solution, guide: Guide | None, file_format: str = "pdf"
     import matplotlib as mpl  # noqa: PLC0415
     from matplotlib.figure import Figure  # noqa: PLC0415
 
+    _loaded_when_used("fontTools", "subset")  # only for fonts that are cut to size, and slow to load
     content = io.BytesIO()
-    with mpl.rc_context(), warnings.catch_warnings():
+    with mpl.rc_context():
         mpl.rcdefaults()  # the user's own style is for the user's own plots
-        mpl.rc("font", family="DejaVu Sans")
+        mpl.rc("font", family=FAMILY)
         mpl.rc("text", usetex=False, parse_math=False)  # a $ in a name is a dollar
         # Glyph by glyph, since to cut a whole font to size takes a second. Latin letters can be searched.
         mpl.rc("pdf", fonttype=3)
         mpl.rc("hatch", linewidth=0.4)
-        # A name in a script that the font lacks prints as boxes; that is no reason to talk of fonts.
-        warnings.filterwarnings("ignore", message="Glyph .* missing from font")
         figure = Figure(figsize=(WIDTH / 25.4, HEIGHT / 25.4))
         _fill(Page(figure), solution, guide)
         metadata = {"CreationDate": None} if file_format == "pdf" else None
         figure.savefig(content, format=file_format, metadata=metadata, dpi=150)
     return content.getvalue()
+
+
+def _loaded_when_used(package: str, name: str) -> None:
+    """Let a module of a package load when something of it is used, not when it is imported."""
+    full = f"{package}.{name}"
+    found = None if full in sys.modules else find_spec(full)
+    if found is None or found.loader is None:
+        return
+    found.loader = LazyLoader(found.loader)
+    module = module_from_spec(found)
+    found.loader.exec_module(module)
+    sys.modules[full] = module
+    setattr(sys.modules[package], name, module)  # so that "from package import name" does not look closer
 
 
 def _fill(page: Page, solution: Solution, guide: Guide | None) -> None:
@@ -70,7 +84,9 @@ def _fill(page: Page, solution: Solution, guide: Guide | None) -> None:
 
 
 def _header(page: Page, solution: Solution) -> None:
-    page.text(MARGIN, 18.0, shortened(solution.task.name, _NAME) or "task", 16.0, weight="bold")
+    name = shortened(solution.task.name, WIDTH - 2 * MARGIN, _TITLE, bold=True) or "task"
+    page.text(MARGIN, 18.0, name, _TITLE, weight="bold")
     shape = "" if not solution.designs else f", shape {solution.shape} of {len(solution.designs)}"
-    right = f"{shortened(solution.task.robot.name, 30)}, seed {solution.seed}{shape}, synth {__version__}"
+    robot = shortened(solution.task.robot.name, _ROBOT, 6.5)
+    right = f"{robot}, seed {solution.seed}{shape}, synth {__version__}"
     page.text(WIDTH - MARGIN, 10.0, right, 6.5, ha="right", color="#555555")

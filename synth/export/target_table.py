@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.export.names import shortened
+from synth.export.typesetting import shortened
 from synth.guide.text import clearance_told
 from synth.rounding import rounded_down, rounded_up
 from synth.task import DEFAULT_TOLERANCE
@@ -19,8 +19,9 @@ if TYPE_CHECKING:
     from synth.synthesis import Solution
 
 _PITCH = 3.6  # mm
+_SIZE = 7.5  # pt
 _MOST_TARGETS = 7
-_NAME = 24  # characters
+_NAME = 32.0  # mm
 
 
 def listed_targets(solution: Solution) -> Sequence[int]:
@@ -46,29 +47,34 @@ def target_table(page: Page, x: float, y: float, solution: Solution) -> float:
     page.text(x, y, heading, 9.5, weight="bold")
     heads = [("miss", 56.0), ("of, mm", 68.0)]
     if solution.found:
-        heads.append(("joints 1, 2, °", 92.0))
-        heads += [("clear, mm", 108.0)] if task.obstacles else []
+        heads.append(("joints 1, 2, °", 93.0))
+        heads += [("clear, mm", 110.0)] if task.obstacles else []
     for head, column in heads:
         page.text(x + column, y, head, 7.0, ha="right", color="#555555")
     for row, index in enumerate(listed, start=1):
         target, line = task.targets[index], y + _PITCH * row + 0.6
-        page.text(x, line, f"{index + 1}", 7.5, weight="bold")
-        page.text(x + 6.0, line, shortened(target.name, _NAME), 7.5)
+        page.text(x, line, f"{index + 1}", _SIZE, weight="bold")
+        page.text(x + 6.0, line, shortened(target.name, _NAME, _SIZE), _SIZE)
         default = "*" if target.tolerance == DEFAULT_TOLERANCE else ""
-        page.text(x + 68.0, line, f"{rounded_down(target.tolerance, digits=2)}{default}", 7.5, ha="right")
+        page.text(x + 68.0, line, f"{rounded_down(target.tolerance, digits=2)}{default}", _SIZE, ha="right")
         if results is None:
-            page.text(x + 56.0, line, "no shape", 7.5, ha="right", weight="bold")
+            page.text(x + 56.0, line, "no shape", _SIZE, ha="right", weight="bold")
             continue
         result = results[index]
         no, weight = ("", "normal") if result.within_tolerance else ("NO  ", "bold")
-        page.text(x + 56.0, line, f"{no}{rounded_up(result.miss, digits=2)}", 7.5, ha="right", weight=weight)
+        page.text(
+            x + 56.0, line, f"{no}{rounded_up(result.miss, digits=2)}", _SIZE, ha="right", weight=weight
+        )
         if solution.found:
             theta1, theta2 = np.degrees(result.joints)
-            page.text(x + 92.0, line, f"{theta1:z.1f}, {theta2:z.1f}", 7.5, ha="right")
+            page.text(x + 93.0, line, f"{theta1:z.2f}, {theta2:z.2f}", _SIZE, ha="right")
             if not math.isinf(result.clearance):
                 told = clearance_told(result.clearance).replace(" mm", "").replace(" at least", "+")
-                page.text(x + 108.0, line, told, 7.5, ha="right")
+                page.text(x + 110.0, line, told, _SIZE, ha="right")
     bottom = y + _PITCH * (len(listed) + 1) + 0.6
+    if len(listed) < len(task.targets):
+        page.text(x + 6.0, bottom, "all of them: see solution.json", 6.5, color="#555555")
+        bottom += _PITCH
     if any(task.targets[index].tolerance == DEFAULT_TOLERANCE for index in listed):
         page.text(
             x + 6.0,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from synth.errors import GeometryError
+from synth.rounding import Unit, told_apart
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -185,9 +186,11 @@ def _reason(s: FloatArray) -> str:
     # Only a margin against rounding: that something is wrong has been established.
     margin = 1e-9
     if excess > margin * float(np.max(d)):
+        told = told_apart(float(d[i, j]), float(d[i, k] + d[k, j]), Unit.M, 6)
+        longer, others = (f"{float(each):.12g}" for each in told)
         return (
-            f"d{i + 1}{j + 1} = {d[i, j]:.6g} m is longer than d{min(i, k) + 1}{max(i, k) + 1} + "
-            f"d{min(j, k) + 1}{max(j, k) + 1} = {d[i, k] + d[k, j]:.6g} m"
+            f"d{i + 1}{j + 1} = {longer} m is longer than d{min(i, k) + 1}{max(i, k) + 1} + "
+            f"d{min(j, k) + 1}{max(j, k) + 1} = {others} m"
         )
     lowest, four = min(_determinants(s, 4), default=(0.0, ""))
     if lowest < -margin * float(np.max(s)) ** 3:

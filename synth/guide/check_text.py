@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.guide.checking import Verdict
+from synth.rounding import Unit, rounded_down, rounded_up
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
@@ -108,12 +109,12 @@ def axis_sentences(fit: ArmFit) -> list[str]:
     elevation = math.degrees(math.asin(float(np.clip(u[2], -1.0, 1.0))))
     heading = math.degrees(math.atan2(u[1], u[0])) % 360.0
     side = "above" if elevation >= 0.0 else "below"
-    tilt = math.degrees(fit.direction_sigma)
-    spread = f"{_mm_up(fit.point_sigma)} mm across it at the link's end"
+    spread = (
+        f"{_mm_up(fit.point_sigma)} mm across it at the link's end, "
+        f"{rounded_up(fit.direction_sigma, Unit.DEG, 2)} deg of its direction"
+    )
     points = f"axis 2 points {abs(elevation):.1f} deg {side} horizontal, heading {heading:.1f} deg"
-    sentences = [
-        f"{points}; standard deviation {spread}, {math.ceil(tilt * 100) / 100:.2f} deg of its direction"
-    ]
+    sentences = [f"{points}; standard deviation {spread}"]
     if not fit.shows_roll:
         sentences.append(
             "the zero of joint 2 is not shown: P5 must be seen, or a marker such as E:-60; without it "
@@ -163,9 +164,9 @@ def _target_lines(check: Check) -> list[str]:
 
 
 def _mm_up(value: float) -> str:
-    return f"{math.ceil(1e4 * value - 1e-9) / 10:.1f}"
+    return rounded_up(value)
 
 
 def _percent_down(chance: float) -> str:
     """Return a chance in percent, rounded down; of samples 100 % proves nothing."""
-    return f"{min(math.floor(100.0 * chance + 1e-9), 99)} %"
+    return f"{min(int(rounded_down(chance, Unit.PERCENT, 0)), 99)} %"

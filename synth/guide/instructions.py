@@ -29,9 +29,10 @@ def instructions(guide: Guide) -> tuple[str, ...]:
         guide: The guide to a shape that meets its task.
     """
     steps = [] if guide.cut is None else [cut_sentence(*guide.cut)]
-    limit = 1e3 * guide.arm.robot.link.min_bend_radius
+    limit = rounded_up(guide.arm.robot.link.min_bend_radius)
     shape = (
-        f"Soften the link and shape it: {link_sentence(guide.link)}, never below {limit:.0f} mm. "
+        f"Soften the link and shape it: {link_sentence(guide.link)}. "
+        f"Bend it nowhere tighter than to a radius of {limit} mm. "
         "P3 and P4 come to their places; L100 is the middle of the tube, 100 mm along from P2, END its end."
     )
     return (
@@ -89,11 +90,11 @@ def distances_sentence(guide: Guide) -> str:
 
 def link_sentence(shape: LinkShape) -> str:
     """Return the numbers of a link's shape, without a full stop."""
-    radius = "straight"
-    if shape.min_bend_radius < _STRAIGHT:
-        radius = f"smallest bend radius {rounded_down(shape.min_bend_radius)} mm"
-    bend = math.degrees(shape.total_bend)
-    return f"link {1e3 * shape.length:.1f} mm long, {radius}, {bend:.1f} deg of bend in all"
+    length = f"link {1e3 * shape.length:.1f} mm long"
+    if shape.min_bend_radius >= _STRAIGHT:
+        return f"{length}, as good as straight"
+    radius, bend = rounded_down(shape.min_bend_radius), math.degrees(shape.total_bend)
+    return f"{length}, smallest bend radius {radius} mm, {bend:.1f} deg of bend in all"
 
 
 def tolerance_sentences(guide: Guide) -> tuple[str, ...]:

@@ -14,6 +14,8 @@ from synth.guide.guide import SPACING, make_guide
 from synth.guide.instructions import base_sentence, hand_sentence, instructions, link_sentence
 from synth.robot import MOST_CLEARANCE
 from synth.rounding import Unit, rounded_down, rounded_up
+from synth.synthesis import Status
+from synth.synthesis.verdict import ending
 from synth.task import DEFAULT_TOLERANCE
 
 if TYPE_CHECKING:
@@ -43,24 +45,23 @@ def summary_text(solution: Solution, guide: Guide | None = None) -> str:
     if solution.designs:
         lines += _target_lines(solution.targets)
     else:
-        lines.append(
-            _bullet(f"{len(solution.task.targets)} targets asked for, none reached: there is no shape")
-        )
+        asked = _counted(len(solution.task.targets), "target")
+        lines.append(_bullet(f"{asked} asked for, none reached: there is no shape"))
     bullets = [] if guide is None or not guide.met else _shape_bullets(guide)
     if len(solution.designs) > 1:
-        best = ", the best" if solution.shape == 1 else ""
+        best = (", the best" if solution.found else ", the nearest") if solution.shape == 1 else ""
         bullets.append(
             f"{len(solution.designs)} distinct shapes; this is shape {solution.shape}{best} "
             "(--all lists them, --shape K shows another)"
         )
-    starts = "1 start" if solution.starts == 1 else f"{solution.starts} starts"
+    starts = _counted(solution.starts, "start")
     bullets.append(f"seed {solution.seed}, {starts}, {solution.time.total:.2f} s")
     return "\n".join([*lines, *map(_bullet, bullets)])
 
 
 def headline_of(solution: Solution) -> str:
     """Return the task's name and how it ended."""
-    return f"{solution.task.name}: {solution.status.told(with_shape=bool(solution.designs))}"
+    return f"{solution.task.name}: {ending(solution.status, solution.designs)}"
 
 
 def knowledge(solution: Solution, most: int = _MOST_REASONS) -> list[str]:
@@ -72,7 +73,26 @@ def knowledge(solution: Solution, most: int = _MOST_REASONS) -> list[str]:
     """
     proof = proof_sentence(solution)
     told = [*reasons_told(solution, most), *([proof] if proof else [])]
-    return [*told, *(f"{release.sentence} would do" for release in solution.releases), *solution.notes]
+    return [*told, *help_told(solution)]
+
+
+def help_told(solution: Solution) -> list[str]:
+    """Return what would let a task be met that is not, how more is found out, and what else is to be said."""
+    if solution.found or solution.status is Status.FAILED:
+        return list(solution.notes)
+    told = [f"{release.sentence} would do" for release in solution.releases]
+    open_yet = solution.status is not Status.PROVEN_IMPOSSIBLE
+    if open_yet and solution.designs and not solution.best.verification.violations:
+        worst = rounded_up(float(solution.best.verification.misses.max()), digits=2)
+        told.append(f"tolerances of {worst} mm would be met by the nearest shape found")
+    told += solution.notes
+    if solution.status is Status.LIMIT:
+        told.append("more time may find a shape")
+    if not (solution.explained or solution.releases):
+        told.append("solving with --why looks for one limit that, if it gave way, would let the task be met")
+    if open_yet and solution.bound is None and solution.task.robot.rigid_link.is_fixed:
+        told.append("solving with --prove tells how near any shape can come, or that the task is impossible")
+    return told
 
 
 def reasons_told(solution: Solution, most: int) -> list[str]:
@@ -131,7 +151,7 @@ def solution_text(solution: Solution, *, alternatives: bool = False) -> str:
     guide = make_guide(solution.task, solution.designs[0]) if solution.designs else None
     lines = [guide_text(guide, solution)]
     if alternatives and solution.designs[1:]:
-        lines += ["", "Other shapes, the best first:"]
+        lines += ["", f"Other shapes, the {'best' if solution.found else 'nearest'} first:"]
         lines += [
             f"{number:>3}  {_shape_line(design)}"
             for number, design in zip(solution.shape_numbers[1:], solution.designs[1:], strict=True)
@@ -173,21 +193,24 @@ def _shape_bullets(guide: Guide) -> list[str]:
     bullets = [motion.describe() for motion in guide.ways[:_MOST_WAYS]]
     if len(guide.ways) > _MOST_WAYS:
         bullets.append(f"{len(guide.ways)} ways from target to target in all: see solution.json")
-    bullets += [guide.arm.category_distances.describe(), link_sentence(guide.link)]
+    bullets += [f"kind of shape: {guide.arm.category_distances.describe()}", link_sentence(guide.link)]
     return bullets if guide.forgiveness is None else [*bullets, hand_sentence(guide.forgiveness)]
 
 
 def _shape_line(design: Design) -> str:
     """Return one of several shapes in a line, with the figures by which a person chooses."""
     worst = rounded_up(float(design.verification.misses.max()), digits=3)
-    figures = design.figures
+    told, figures = f"worst miss {worst:>8} mm", design.figures
     if figures is not None and design.verification.found:
         by_hand = rounded_up(figures.forgiveness.expected_worst_miss)
         swing = rounded_up(figures.largest_swing, Unit.DEG, 0)
-        worst += f" mm, {by_hand:>4} by a hand to expect, swings of {swing} deg"
-        worst += f", no way from {figures.ways_missing} targets" if figures.ways_missing else ""
-        return f"worst miss {worst:>8}  {link_sentence(design.arm.shape)}, {design.arm.category.value}"
-    return f"worst miss {worst:>8} mm  {link_sentence(design.arm.shape)}, {design.arm.category.value}"
+        told += f"; by a hand expect {by_hand} mm; joints swing by up to {swing} deg"
+        told += f"; {_counted(figures.ways_missing, 'way')} not found" if figures.ways_missing else ""
+    return f"{told}; {link_sentence(design.arm.shape)}; {design.arm.category.value}"
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
 
 
 def _target_lines(targets: Sequence[TargetResult]) -> list[str]:
@@ -195,8 +218,9 @@ def _target_lines(targets: Sequence[TargetResult]) -> list[str]:
     lines = []
     if len(targets) > _MOST_TARGETS:
         reached = sum(target.within_tolerance for target in targets)
+        are = "is" if reached == 1 else "are"
         lines = [
-            _bullet(f"{reached} of {len(targets)} targets are within tolerance; the {_MOST_TARGETS} worst:")
+            _bullet(f"{reached} of {len(targets)} targets {are} within tolerance; the {_MOST_TARGETS} worst:")
         ]
         targets = sorted(targets, key=lambda target: -target.miss / target.tolerance)[:_MOST_TARGETS]
     width = max(len(target.name) for target in targets)

@@ -19,6 +19,7 @@ from synth.arrays import FloatArray, frozen
 from synth.geometry import Invariants, SweptCircle
 from synth.measurement.standing_arm import rotation_matrix
 from synth.robot import Interval, JointLimits
+from synth.rounding import rounded_up, told_apart
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -145,7 +146,10 @@ def calibrate(
         refusal = _too_little_swept(points, joints, arm, rms, most_rms)
     elif plausibility < _IMPLAUSIBLE:
         off = float(np.sqrt(np.mean(misses**2)))
-        refusal = f"the points fit no arm of this kind: they are {1e3 * off:.2f} mm off the best one (RMS)"
+        refusal = (
+            "the points fit no arm of this kind: they are "
+            f"{rounded_up(off, digits=2)} mm off the best one (root mean square)"
+        )
     return Calibration(
         arm, covariance, _of_invariants(arm, covariance), rms, plausibility, used, joints is not None, refusal
     )
@@ -236,9 +240,9 @@ def _too_little_swept(
     """Return that a sweep does not determine the surface, and what to move more."""
     angles = arm.closest(points)[:, 1] if joints is None else joints[:, 1]
     seen, whole = float(np.ptp(angles)), arm.limits.second.upper - arm.limits.second.lower
+    would, asked = told_apart(rms, most_rms, digits=2)
     return (
-        f"the sweep does not determine the surface: it would be off by {1e3 * rms:.2f} mm root mean "
-        f"square, and {1e3 * most_rms:.2f} mm "
-        f"is asked. Joint 2 moved over {np.degrees(seen):.0f} of its {np.degrees(whole):.0f} deg: move it "
-        "over the whole range" + ("" if joints is not None else ", or give the joint angles")
+        f"the sweep does not determine the surface: it would be off by {would} mm root mean square, and "
+        f"{asked} mm is asked. Joint 2 moved over {np.degrees(seen):.0f} of its {np.degrees(whole):.0f} deg: "
+        "move it over the whole range" + ("" if joints is not None else ", or give the joint angles")
     )

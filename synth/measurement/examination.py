@@ -15,6 +15,7 @@ import numpy as np
 
 from synth.measurement.arm_fit import ArmFit, fit_arm, marker_positions
 from synth.measurement.markers import Place, Readings
+from synth.rounding import rounded_up
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -99,7 +100,7 @@ def examine(
             worst = float(np.linalg.norm(fit.residuals, axis=1).max())
             return Examination(
                 None, used, tuple(lost),
-                f"the markers contradict each other by up to {1e3 * worst:.1f} mm, and which of them is "
+                f"the markers contradict each other by up to {rounded_up(worst)} mm, and which of them is "
                 "wrong cannot be told",
             )  # fmt: skip
         name, off = culprit

@@ -10,6 +10,7 @@ import numpy as np
 from synth.robot import ANYWHERE, Arm, BasePose, Interval
 from synth.robot.arc_chains import ArcChains
 from synth.robot.chain_steps import improved
+from synth.rounding import told_apart
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -174,7 +175,5 @@ def _obstacle(robot: Robot, lower: FloatArray) -> str:
     longest = robot.link.length.upper
     if chord <= longest + _LENGTH_SLACK:
         return ""
-    return (
-        f"the link's end would be at least {1e3 * chord:.1f} mm from P2, "
-        f"and the link is at most {1e3 * longest:.1f} mm long"
-    )
+    away, length = told_apart(chord, longest)
+    return f"the link's end would be at least {away} mm from P2, and the link is at most {length} mm long"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.measurement.nearest import Fit
+from synth.rounding import rounded_down, rounded_up
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -102,30 +103,36 @@ def _range(spread: Spread, unit: float) -> str:
 
 def _change(nearest: Nearest) -> str:
     """Return the largest change that makes distances realisable, in a few words."""
-    largest = 1e3 * float(np.max(np.abs(nearest.residuals)))
+    largest = float(np.max(np.abs(nearest.residuals)))
     match nearest.fit:
         case Fit.AS_GIVEN:
             return "as given"
         case Fit.WITHIN_BOUNDS:
-            return f"within {max(largest, 0.01):.2f} mm"
+            return f"within {rounded_up(largest, digits=2)} mm"
         case Fit.NOT_FOUND:
-            return f"not found; nearest at {largest:.2f} mm"
+            return f"not found; nearest at {rounded_up(largest, digits=2)} mm"
         case Fit.IMPOSSIBLE:
-            return f"**no**; nearest at {largest:.2f} mm"
+            return f"**no**; nearest at {rounded_up(largest, digits=2)} mm"
 
 
 def _fit_sentence(nearest: Nearest) -> str:
     """Return how points fit distances, and which distance they change most."""
     worst = int(np.argmax(np.abs(nearest.residuals)))
-    change = f"{nearest.measured.names[worst]} by {1e3 * nearest.residuals[worst]:+z.3f} mm"
+    change = f"{nearest.measured.names[worst]} by {_away_from_zero(nearest.residuals[worst])} mm"
     match nearest.fit:
         case Fit.AS_GIVEN:
             return nearest.fit.sentence
         case Fit.WITHIN_BOUNDS:
             return f"{nearest.fit.sentence}; the nearest change {change} at most"
         case Fit.NOT_FOUND | Fit.IMPOSSIBLE:
-            beyond = 1e3 * float(np.max(nearest.beyond))
-            return f"{nearest.fit.sentence}; the nearest change {change}, {beyond:.3f} mm beyond a bound"
+            beyond = rounded_up(float(np.max(nearest.beyond)), digits=3)
+            return f"{nearest.fit.sentence}; the nearest change {change}, {beyond} mm beyond a bound"
+
+
+def _away_from_zero(change: float) -> str:
+    """Return a change with its sign, in mm: no larger one is meant."""
+    size = rounded_up(abs(change), digits=3)
+    return f"{'-' if change < 0.0 else '+'}{size}"
 
 
 def _misprint_lines(misprint: Misprint) -> list[str]:
@@ -142,7 +149,7 @@ def _misprint_lines(misprint: Misprint) -> list[str]:
 def _suspect_words(suspect: Suspect) -> str:
     words = (
         f"{suspect.name} = {1e3 * suspect.value:.6g} mm is impossible, the others ask for "
-        f"{1e3 * suspect.lower:.1f} to {1e3 * suspect.upper:.1f} mm"
+        f"{rounded_down(suspect.lower)} to {rounded_up(suspect.upper)} mm"
     )
     if suspect.reading is None:
         return words
@@ -181,10 +188,10 @@ def _link_sentence(inspection: Inspection) -> str:
         return f"the link cannot take this pose: {link.obstacle}"
     if not link.found:
         return (
-            f"no shape of the link was found that takes this pose; the nearest is {1e3 * link.beyond:.1f} mm "
-            "beyond a bound of d13, d14, d23 or d24"
+            f"no shape of the link was found that takes this pose; the nearest is "
+            f"{rounded_up(link.beyond)} mm beyond a bound of d13, d14, d23 or d24"
         )
     return (
         f"the link can take this pose: {1e3 * shape.length:.0f} mm long, "
-        f"smallest bend radius {1e3 * shape.min_bend_radius:.0f} mm"
+        f"smallest bend radius {rounded_down(shape.min_bend_radius, digits=0)} mm"
     )

@@ -34,7 +34,7 @@ import numpy as np
 
 from synth.robot.interval import Interval
 from synth.robot.reach import LinkReach
-from synth.rounding import Unit, at_least, rounded_down
+from synth.rounding import Unit, at_least, told_apart
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -216,8 +216,7 @@ def _spread(count: int) -> FloatArray:
 
 def _too_little(verb: str, needed: float, limit: float, unit: Unit, what: str = "") -> str:
     """Return by how much a limit is too little, with as many digits as tell the two numbers apart."""
-    told = [(rounded_down(needed, unit, n), f"{unit.of(limit):.{n}f}") for n in range(1, 7)]
-    more, most = next((pair for pair in told if float(pair[0]) > float(pair[1])), told[-1])
+    more, most = told_apart(needed, limit, unit)
     symbol = unit.symbol
     return f"the link would have to {verb} more than {more} {symbol}{what}; {most} {symbol} is its limit"
 

@@ -51,26 +51,27 @@ def limits_of(task: Task) -> Iterator[Limit]:
     yield Limit(
         "link length", high, high,
         lambda more: with_link(replace(link, length=Interval(low, high + more))),
-        lambda more: f"a link {rounded_up(more)} mm longer, up to {rounded_up(high + more)} mm",
+        lambda more: f"a link {rounded_up(more)} mm longer (up to {rounded_up(high + more)} mm)",
     )  # fmt: skip
     yield Limit(
         "link length", low, (1.0 - _LEAST_PART) * low,
         lambda less: with_link(replace(link, length=Interval(low - less, high))),
-        lambda less: f"a link {rounded_up(less)} mm shorter, down to {rounded_down(low - less)} mm",
+        lambda less: f"a link {rounded_up(less)} mm shorter (down to {rounded_down(low - less)} mm)",
     )  # fmt: skip
     radius = link.min_bend_radius
     yield Limit(
         "bend radius", radius, (1.0 - _LEAST_PART) * radius,
         lambda less: with_link(replace(link, min_bend_radius=radius - less)),
-        lambda less: f"a bend radius {rounded_up(less)} mm smaller, down to {rounded_down(radius - less)} mm",
+        lambda less: f"a bend radius {rounded_up(less)} mm smaller "
+        f"(down to {rounded_down(radius - less)} mm)",
     )  # fmt: skip
     bend = link.max_total_bend
     if math.isfinite(bend):
         yield Limit(
             "total bend", bend, 2.0 * math.pi,
             lambda more: with_link(replace(link, max_total_bend=bend + more)),
-            lambda more: f"{rounded_up(more, Unit.DEG)} deg more of bend in all, "
-            f"up to {rounded_up(bend + more, Unit.DEG)} deg",
+            lambda more: f"{rounded_up(more, Unit.DEG)} deg more of bend in all "
+            f"(up to {rounded_up(bend + more, Unit.DEG)} deg)",
         )  # fmt: skip
     for name, key, interval in (("joint 1", "base", limits.base), ("joint 2", "second", limits.second)):
         room = math.pi - 0.5 * (interval.upper - interval.lower)

@@ -15,6 +15,8 @@ import numpy as np
 
 from synth.checks import refuse_unless
 from synth.robot import BasePose
+from synth.rounding import rounded_up
+from synth.synthesis.exact_starts import exact_designs
 from synth.synthesis.relaxed_limits import limits_of, without_limits
 from synth.synthesis.solution import Release, Solution
 from synth.synthesis.solve import follow
@@ -36,6 +38,7 @@ _RESOLUTION = 0.03  # of an amount
 _NOTHING = 1e-6  # of a limit
 _HALVINGS = 6
 _BASE_STEPS = 12
+_BASE_DIGITS = (1, 2, 3)  # decimals of a millimetre; the more the nearer to what was found to do
 _FARTHEST_BASE = 1.0  # m
 
 
@@ -85,7 +88,7 @@ def explain(
     notes = [] if releases or watch.is_up() else [_why_none_does(solution, watch)]
     if watch.interrupted:
         notes = [_how_far(looked_at, [limit.name for limit in limits])]
-    return replace(solution, releases=releases, notes=(*solution.notes, *notes))
+    return replace(solution, releases=releases, notes=(*solution.notes, *notes), explained=True)
 
 
 def _how_far(looked_at: Sequence[str], names: Sequence[str]) -> str:
@@ -96,20 +99,29 @@ def _how_far(looked_at: Sequence[str], names: Sequence[str]) -> str:
 
 
 def _why_none_does(solution: Solution, watch: Watch) -> str:
-    """Return a sentence where no single change does: do several together, or does the surface not fit?"""
+    """Return a sentence where no single change does: do several together, or does the surface not fit?
+
+    That no surface at all fits is proven where algebra says so; else the nearest one found is told.
+    """
     none = "neither one limit relaxed alone nor another place of the base was found that would do"
     free = follow(without_limits(solution.task), solution.designs, starts=_RELAXED[0][1], watch=watch.aside())
     if not free.designs:
-        return none
+        return f"{none}, nor any shape at all with all limits relaxed together"
     if free.found:
         return f"{none}; with all limits relaxed together the task is met, so several of them block it"
-    # Rounded up: so near a surface was found to pass.
-    nearest = math.ceil(1e5 * float(free.best.verification.misses.max())) / 1e2
+    nearest = rounded_up(float(free.best.verification.misses.max()), digits=2)
+    no_arm = _algebra_knows_none(solution)
+    passes = "by algebra none passes exactly" if no_arm else "none was found that passes"
     return (
         f"{none}, nor all limits relaxed together: the workspace of an arm of two joints is one surface of "
-        f"revolution about axis 1, and none was found, with this rigid link, that passes through all the "
-        f"targets; the nearest misses one by {nearest:.2f} mm"
+        f"revolution about axis 1, and {passes} through all the targets with this rigid link; "
+        f"the nearest one found misses none by more than {nearest} mm"
     )
+
+
+def _algebra_knows_none(solution: Solution) -> bool:
+    """Whether no arm with this rigid link reaches the targets exactly, whatever its link: a proof."""
+    return exact_designs(solution.task) == ()
 
 
 def _released(limit: Limit, solution: Solution, watch: Watch) -> Release | None:
@@ -197,10 +209,16 @@ def _base_moved(solution: Solution, watch: Watch) -> Release | None:
         else:
             too_little = part
     shift = enough * shift
+    for digits in _BASE_DIGITS:  # what is told is what does: that place, not one that rounds to it
+        told = np.round(1e3 * shift, digits) / 1e3
+        followed = follow(moved(told), designs, watch=watch.aside())
+        if followed.found:
+            shift, designs = told, followed.designs
+            break
     distance = float(np.linalg.norm(shift))
-    x, y, z = 1e3 * shift
+    x, y, z = (f"{1e3 * each:z.{digits}f}" for each in shift)
     return Release(
         "base", distance, distance / task.robot.link.length.upper,
-        f"the base moved by {1e3 * distance:.1f} mm, ({x:z.1f}, {y:z.1f}, {z:z.1f}) mm",
+        f"the base moved by {rounded_up(distance)} mm (x {x}, y {y}, z {z} mm)",
         designs[0], moved(shift),
     )  # fmt: skip

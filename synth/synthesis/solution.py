@@ -33,7 +33,7 @@ class Status(SentenceEnum):
 
     def told(self, *, with_shape: bool) -> str:
         """Return the sentence, with what the shape shown is, if there is one."""
-        if with_shape and self in (Status.BEST_EFFORT, Status.LIMIT):
+        if with_shape and self in (Status.BEST_EFFORT, Status.LIMIT, Status.PROVEN_IMPOSSIBLE):
             return f"{self.sentence}; what follows is of the nearest shape found"
         return self.sentence
 
@@ -134,6 +134,7 @@ class Solution:
             there is no proof for such a task.
         releases: What would release a task that was not met; empty before `explain` has looked.
         notes: What else is to be said: what was left undone for lack of time, what `explain` found.
+        explained: Whether `explain` has looked for releases, be it in vain.
         breakdown: The traceback of what broke off the search and nobody foresaw; empty mostly.
         shape: Which of the shapes, counted from the best, `designs` begins with; see `showing`.
     """
@@ -151,6 +152,7 @@ class Solution:
     notes: tuple[str, ...] = ()
     breakdown: str = ""
     shape: int = 1
+    explained: bool = False
 
     @property
     def shape_numbers(self) -> tuple[int, ...]:

@@ -24,12 +24,22 @@ _REASONS = 3  # of a kind that are told
 def message(task: Task, status: Status, designs: Sequence[Design], reasons: Sequence[str]) -> str:
     """Return how a search ended in one sentence: its status, what the best shape misses, and why."""
     misses = _what_misses(task, designs[0]) if designs else []
-    ways = designs[0].ways if designs else ()
+    return ": ".join(filter(None, [ending(status, designs), "; ".join([*misses, *reasons])]))
+
+
+def ending(status: Status, designs: Sequence[Design]) -> str:
+    """Return how a search ended without what is missed: its status, or that ways are missing.
+
+    Args:
+        status: How it ended.
+        designs: Its shapes, the one that is told of first.
+    """
+    ways = designs[0].ways if designs and designs[0].verification.found else ()
     no_way = [f"no way was found from {way.start} to {way.end}" for way in ways if not way.found]
-    if no_way and not misses:
-        more = [f"and {len(no_way) - _REASONS} more"] if len(no_way) > _REASONS else []
-        return f"{_REACHED_WITHOUT_WAY} {'; '.join([*no_way[:_REASONS], *more])}"
-    return ": ".join(filter(None, [status.told(with_shape=bool(designs)), "; ".join([*misses, *reasons])]))
+    if not no_way:
+        return status.told(with_shape=bool(designs))
+    more = [f"and {len(no_way) - _REASONS} more"] if len(no_way) > _REASONS else []
+    return f"{_REACHED_WITHOUT_WAY} {'; '.join([*no_way[:_REASONS], *more])}"
 
 
 def showing(solution: Solution, number: int) -> Solution:

@@ -14,6 +14,7 @@ import numpy as np
 from synth.arrays import FloatArray, frozen
 from synth.checks import refuse_unless
 from synth.robot import Arm, ArmBody
+from synth.rounding import Unit, rounded_up, told_apart
 from synth.task import Task, Topology
 
 if TYPE_CHECKING:
@@ -235,10 +236,15 @@ def _length_violations(arm: Arm) -> list[Violation]:
     ):
         violations += _exceeds(
             f"length: {name}", _outside(interval, value), 0.0, _LENGTH_SLACK,
-            f"the length of {name} would have to be {1e3 * value:.2f} mm; "
-            f"its limits are {1e3 * interval.lower:.2f} and {1e3 * interval.upper:.2f} mm",
+            _of_its_limits(f"the length of {name} would have to be", value, interval),
         )  # fmt: skip
     return violations
+
+
+def _of_its_limits(would: str, value: float, interval: Interval) -> str:
+    limit = interval.upper if value > interval.upper else interval.lower
+    told, bound = told_apart(value, limit, digits=2)
+    return f"{would} {told} mm; {bound} mm is its {'upper' if value > limit else 'lower'} limit"
 
 
 def _bend_violations(arm: Arm) -> list[Violation]:
@@ -246,13 +252,13 @@ def _bend_violations(arm: Arm) -> list[Violation]:
     return [
         *_exceeds(
             "min_bend_radius", link.min_bend_radius, shape.min_bend_radius, _LENGTH_SLACK,
-            f"the link would need a bend radius of {1e3 * shape.min_bend_radius:.1f} mm; "
-            f"{1e3 * link.min_bend_radius:.1f} mm is its limit",
+            "the link would need a bend radius of {} mm; {} mm is its limit".format(
+                *told_apart(shape.min_bend_radius, link.min_bend_radius)),
         ),
         *_exceeds(
             "max_total_bend", shape.total_bend, link.max_total_bend, _ANGLE_SLACK,
-            f"the link would have to bend by {math.degrees(shape.total_bend):.1f} deg in all; "
-            f"{math.degrees(link.max_total_bend):.1f} deg is its limit",
+            "the link would have to bend by {} deg in all; {} deg is its limit".format(
+                *told_apart(shape.total_bend, link.max_total_bend, Unit.DEG)),
         ),
     ]  # fmt: skip
 
@@ -267,7 +273,7 @@ def _joint_violations(arm: Arm, joints: FloatArray) -> list[Violation]:
         worst = _outside(interval, angles)
         violations += _exceeds(
             name, worst, 0.0, _ANGLE_SLACK,
-            f"the {name} would have to turn {math.degrees(worst):.2f} deg beyond its limit",
+            f"the {name} would have to turn {rounded_up(worst, Unit.DEG, 2)} deg beyond its limit",
         )  # fmt: skip
     return violations
 
@@ -286,7 +292,7 @@ def _floor_violations(task: Task, arm: Arm, end_effector: FloatArray) -> list[Vi
         depth = task.floor - height
         violations += _exceeds(
             f"floor: {part}", depth, 0.0, _LENGTH_SLACK,
-            f"the {part} would be {1e3 * depth:.2f} mm below the floor",
+            f"the {part} would be {rounded_up(depth, digits=2)} mm below the floor",
         )  # fmt: skip
     return violations
 
@@ -321,7 +327,7 @@ def _obstacle_violations(task: Task, room: _Room) -> list[Violation]:
         violations += _exceeds(
             f"obstacle: {obstacle}", depth, 0.0, _LENGTH_SLACK,
             f"at {task.targets[index].name} the {('malleable', 'rigid')[part]} link would be "
-            f"{1e3 * depth:.2f} mm inside {obstacle}",
+            f"{rounded_up(depth, digits=2)} mm inside {obstacle}",
         )  # fmt: skip
     return violations
 
@@ -329,12 +335,13 @@ def _obstacle_violations(task: Task, room: _Room) -> list[Violation]:
 def _self_violations(task: Task, room: _Room) -> list[Violation]:
     violations = _exceeds(
         "itself", -room.tube_from_itself, 0.0, _LENGTH_SLACK,
-        f"the malleable link would be {-1e3 * room.tube_from_itself:.2f} mm inside itself or the base",
+        f"the malleable link would be {rounded_up(-room.tube_from_itself, digits=2)} mm inside itself "
+        "or the base",
     )  # fmt: skip
     for index in np.flatnonzero(~(room.rod_from_tube >= -_LENGTH_SLACK)).tolist():
         name, depth = task.targets[index].name, -float(room.rod_from_tube[index])
         violations += _exceeds(
             "itself", depth, 0.0, _LENGTH_SLACK,
-            f"at {name} the rigid link would be {1e3 * depth:.2f} mm inside the malleable one",
+            f"at {name} the rigid link would be {rounded_up(depth, digits=2)} mm inside the malleable one",
         )  # fmt: skip
     return violations

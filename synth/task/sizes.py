@@ -20,12 +20,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.errors import Mistake
+from synth.rounding import Unit, rounded_down, rounded_up
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from synth.robot import Robot
     from synth.task.model import Task
 
 PER_METRE = {"mm": 1000.0, "cm": 100.0, "m": 1.0}  # to divide by: 455 / 1000 is 0.455 exactly
+_TOLD_IN_METRES = 100.0  # m, a length from which on millimetres help nobody
 _NEAR, _FAR = 0.01, 20.0  # of the reach
 _SHORT, _LONG = 0.05, 1000.0  # of the longer of d12 and d34
 _MEANT = (0.1, 1.5)  # of the reach: where the farthest target is in a unit that may be meant
@@ -53,7 +57,7 @@ def unmeant_sizes_of_robot(robot: Robot) -> list[Mistake]:
     name, wrong = ("d12" if robot.d12 == baseline else "d34"), "short" if longest < baseline else "long"
     return [
         Mistake(
-            f"a link of {_millimetres(longest)} is too {wrong} beside {name} = {_millimetres(baseline)}: "
+            f"a link of {_told(longest)} is too {wrong} beside {name} = {_told(baseline)}: "
             "are all lengths of the robot in one unit, and is that unit right?",
             key="link.length",
         )
@@ -68,15 +72,15 @@ def unmeant_distances(task: Task, unit: str | None = None) -> list[Mistake]:
     if _NEAR * reach <= farthest and nearest <= _FAR * reach:
         return []
     if farthest < _NEAR * reach:
-        where = f"all targets are within {_millimetres(_up(farthest))} of P1"
+        where = f"all targets are within {_told(farthest, rounded_up)} of P1"
     else:
-        where = f"all targets are at least {_millimetres(nearest)} from P1"
-    sentence = f"{where}, and this robot reaches {_millimetres(reach)}"
+        where = f"all targets are at least {_told(nearest, rounded_down)} from P1"
+    sentence = f"{where}, and this robot reaches {_told(reach, rounded_up)} at most"
     number, stated = farthest * PER_METRE[unit or "m"], unit or "m"
     question = f"is length_unit: {stated} right?" if unit else "are they in metres?"
     for other, per_metre in PER_METRE.items():
         if other != stated and _MEANT[0] * reach <= number / per_metre <= _MEANT[1] * reach:
-            question += f" In {other} the farthest would be {_millimetres(number / per_metre)} away"
+            question += f" In {other} the farthest would be {_told(number / per_metre, rounded_up)} away"
             break
     return [Mistake(f"{sentence}: {question}", key="targets")]
 
@@ -91,16 +95,12 @@ def reach_of(robot: Robot) -> float:
     return robot.d12 + robot.link.length.upper + max(rods)
 
 
-def _up(length: float) -> float:
-    """Round up to three digits, so that `within` stays true."""
-    if length == 0.0:
-        return 0.0
-    step = 10.0 ** (math.floor(math.log10(length)) - 2)
-    return math.ceil(length / step) * step
-
-
-def _millimetres(length: float) -> str:
-    return f"{1e3 * length:.4g} mm" if length < 100.0 else f"{length:.4g} m"
+def _told(length: float, rounded: Callable[[float, Unit, int], str] = rounded_up) -> str:
+    """Return a length with its unit and four digits or more, rounded up or down."""
+    unit = Unit.MM if length < _TOLD_IN_METRES else Unit.M
+    number = float(unit.of(length))
+    digits = max(3 - math.floor(math.log10(number)), 0) if number > 0.0 else 0
+    return f"{float(rounded(length, unit, digits)):.10g} {unit.symbol}"
 
 
 def _with_key(mistake: Mistake, key: str) -> Mistake:

@@ -50,6 +50,7 @@ class Bound:
         tightest_tolerance: The tightest tolerance of the targets, m.
         boxes: How many boxes of shapes were looked at.
         left_out: What the task limits and the proof does not know, in words: the gap may be due to it.
+        weighted: Whether the tolerances differ, so that weighted misses are no plain ones.
     """
 
     lower_bound: float
@@ -57,6 +58,7 @@ class Bound:
     tightest_tolerance: float
     boxes: int
     left_out: tuple[str, ...] = ()
+    weighted: bool = False
 
     @property
     def gap(self) -> float:
@@ -88,6 +90,7 @@ class Bound:
             proven.append(f"every shape misses some target by {at_least(self.lower_bound, digits=3)}")
         gap = max(worst - self.lower_bound, 0.0)
         if math.isfinite(gap):
+            whose += ", each weighed by the tightest tolerance over its own," if self.weighted else ""
             proven.append(f"{whose} is within {rounded_up(gap, digits=3)} mm of the least there is")
         sentence = f"proven: {'; '.join(proven) or 'nothing yet'}"
         if self.left_out and _CLOSED < gap < math.inf:
@@ -127,12 +130,13 @@ def prove(
     if not task.robot.rigid_link.is_fixed:
         return None
     factors = tightest / task.tolerances
+    weighted = bool(np.any(factors != factors[0]))
     size = task.robot.link.length.upper + longest_rigid_link(task.robot) + float(np.abs(task.positions).max())
     rounding = _ROUNDING * size
     wanted = gap - rounding
     enough = best_found - wanted
     if not enough > 0.0:
-        return Bound(0.0, best_found, tightest, 0, _left_out(task))
+        return Bound(0.0, best_found, tightest, 0, _left_out(task), weighted)
     if math.isinf(enough):  # nothing was found: then to know that it is impossible is all
         enough = 1.1 * tightest + gap
     chosen = _hardest(task.positions, factors * misses)
@@ -158,8 +162,8 @@ def prove(
             enough = min(enough, best_found - wanted)
             boxes = boxes.take(boxes.bound < enough)
         lower = min(float(boxes.bound.min(initial=enough)), enough)
-        watch.tell(worst_miss=best_found, lower_bound=lower, phase="proving")
-    return Bound(max(lower - rounding, 0.0), best_found, tightest, count, _left_out(task))
+        watch.tell(worst_miss=math.inf if weighted else best_found, lower_bound=lower, phase="proving")
+    return Bound(max(lower - rounding, 0.0), best_found, tightest, count, _left_out(task), weighted)
 
 
 def _left_out(task: Task) -> tuple[str, ...]:
