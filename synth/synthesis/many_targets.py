@@ -63,7 +63,7 @@ def ranked(task: Task, arms: Sequence[Arm], seed: int, watch: Watch) -> list[Arm
         seed: The same larger part for the same seed.
         watch: When it is up, the other arms are left out.
     """
-    some = _random_part(task, _SAMPLE, seed)
+    some = random_part(task, _SAMPLE, seed)
     missing: list[tuple[float, Arm]] = []
     reaching: list[Arm] = []
     for arm in arms:
@@ -79,7 +79,14 @@ def ranked(task: Task, arms: Sequence[Arm], seed: int, watch: Watch) -> list[Arm
     return [*reaching, *(arm for _, arm in sorted(missing, key=lambda pair: pair[0]))]
 
 
-def _random_part(task: Task, count: int, seed: int) -> Task:
+def random_part(task: Task, count: int, seed: int) -> Task:
+    """Return a task with so many of its targets, or the task itself if it has no more.
+
+    Args:
+        task: The task.
+        count: How many targets to keep.
+        seed: The same part for the same seed.
+    """
     if count >= len(task.targets):
         return task
     chosen = np.random.default_rng([seed, count]).choice(len(task.targets), count, replace=False)
@@ -101,7 +108,7 @@ def improved(task: Task, arm: Arm, watch: Watch) -> Arm:
         if watch.is_up():
             break
         watch.tell(phase="improving for all targets")
-        some = _random_part(squares, count, 0)
+        some = random_part(squares, count, 0)
         refined = refine(some, Population.of(arm), iterations=steps)
         arm = refined.population.arm(0, task.base)
     return arm

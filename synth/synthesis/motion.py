@@ -18,8 +18,8 @@ from synth.arrays import FloatArray, frozen
 from synth.checks import refuse_unless
 from synth.robot import ArmBody, turned
 from synth.synthesis.margins import joint_shortfalls
+from synth.synthesis.room import seen_by
 from synth.synthesis.solution import Design, joints_reaching
-from synth.synthesis.verification import seen_by
 from synth.task import Task
 
 if TYPE_CHECKING:

@@ -13,9 +13,9 @@ import numpy as np
 
 from synth.errors import in_a_line
 from synth.robot import ANYWHERE, Interval, links_to_poses
+from synth.synthesis.all_targets import WholeTask, for_all_targets, verified_in_time
 from synth.synthesis.certificate import Certifier
 from synth.synthesis.impossibility import why_impossible
-from synth.synthesis.many_targets import improved, levelled, ranked
 from synth.synthesis.polishing import Polishing
 from synth.synthesis.population import in_equal_arcs
 from synth.synthesis.ranking import best_of, leaves_no_wish, objective
@@ -41,8 +41,7 @@ _LOOKED_AT = 4  # shapes that a person would want, for each alternative
 _ALTERNATIVES_THAT_MISS = 2  # likewise, at most, where no shape meets all targets
 _GAIN = 1e-3  # of the objective: the least that is worth another start
 _PROOF_TIME = 60.0  # s
-# Targets of all shapes together that are looked at where the search knew only a part of them.
-_VERIFIED_AT_MOST = 20_000
+_KEPT_BACK = 0.5  # of the time: where the search looks at a part of the targets, to look at all of them
 
 
 @dataclass
@@ -80,6 +79,11 @@ class Search:
     @cached_property
     def _impossible(self) -> tuple[str, ...]:
         return why_impossible(self.task)
+
+    @property
+    def kept_back(self) -> float:
+        """Which share of the time the search leaves for looking at all targets."""
+        return 0.0 if self.part is self.task else _KEPT_BACK
 
     def follow(self, designs: Sequence[Design]) -> bool:
         """Polish the best shapes for a task nearby; whether one of them reaches every target."""
@@ -194,24 +198,24 @@ class Search:
 
     def solution(self) -> Solution:
         """Rank what was found and say what it is worth."""
-        designs: tuple[Design, ...] = ()
+        whole = WholeTask(self.task)
         with self.kept():
-            found = [*self.polishing.designs, *self._changing_little()]
-            designs = self._for_all_targets(best_of(self.part, found))
-        if self.broke_off is not None and not designs:
+            whole = self._whole(best_of(self.part, [*self.polishing.designs, *self._changing_little()]))
+        if self.broke_off is not None and not whole.designs:
             with self.kept():
-                best = best_of(self.part, self.polishing.designs)[:1]
-                checked = [Design(one.arm, verify(self.task, one.arm)) for one in best]
-                designs = tuple(one for one in checked if one.verification.possible)
+                for one in best_of(self.part, self.polishing.designs)[:1]:
+                    seen, design = verified_in_time(self.task, one.arm, self.watch)
+                    whole = WholeTask(seen, (design,) if design.verification.possible else ())
+        task, designs = whole.task, whole.designs
         status: Status = Status.FAILED
         reasons: tuple[str, ...] = ()
         with self.kept():
-            status, reasons = self._verdict(designs)
+            status, reasons = self._verdict(whole)
         words = status.sentence
         with self.kept():
-            words = message(self.task, status, designs, (*self._why_broken(), *reasons))
+            words = message(task, status, designs, (*self._why_broken(), *reasons))
         return Solution(
-            self.task,
+            task,
             status,
             words,
             (*self._why_broken(), *reasons),
@@ -220,7 +224,7 @@ class Search:
             self.starts,
             self.watch.timing(),
             self._bound_for(designs),
-            notes=tuple(self.notes),
+            notes=(*self.notes, *filter(None, [whole.note])),
             breakdown="".join(traceback.format_exception(self.broke_off)) if self.broke_off else "",
         )
 
@@ -240,8 +244,17 @@ class Search:
     def _why_broken(self) -> tuple[str, ...]:
         return () if self.broke_off is None else (f"the search broke off: {in_a_line(self.broke_off)}",)
 
-    def _verdict(self, designs: tuple[Design, ...]) -> tuple[Status, tuple[str, ...]]:
+    def _whole(self, designs: tuple[Design, ...]) -> WholeTask:
+        """Return designs for a part of the targets as designs for all."""
+        if self.part is self.task:
+            return WholeTask(self.task, designs)
+        whole = for_all_targets(self.task, designs, self.seed, self.watch)
+        self.polishing.blocked.extend(whole.blocked)
+        return whole
+
+    def _verdict(self, whole: WholeTask) -> tuple[Status, tuple[str, ...]]:
         """Return how the search ended, and why it found no more, as far as that is known."""
+        designs = whole.designs
         if designs and designs[0].verification.found:
             return Status.FOUND, ()
         if self.broke_off is not None:
@@ -252,7 +265,8 @@ class Search:
             return Status.PROVEN_IMPOSSIBLE, (self.bound.sentence,)
         if self.polishing.breakdowns and not (self.polishing.designs or self.polishing.blocked):
             return Status.FAILED, tuple(self.polishing.breakdowns[:1])
-        status = Status.LIMIT if self.watch.interrupted and not self.complete else Status.BEST_EFFORT
+        cut_short = self.watch.interrupted and not self.complete
+        status = Status.LIMIT if cut_short or whole.unseen else Status.BEST_EFFORT
         return status, why_no_better(self.task, designs, self.polishing.blocked)
 
     def _changing_little(self) -> list[Design]:
@@ -279,32 +293,6 @@ class Search:
                         nearer = replace(arm, shape=shape)
                         bent_again.append(Design(nearer, verify(self.part, nearer)))
         return [design for design in bent_again if design.verification.found]
-
-    def _for_all_targets(self, designs: tuple[Design, ...]) -> tuple[Design, ...]:
-        """Return designs improved for all targets, and verified with them, in their order."""
-        if self.part is self.task:
-            return designs
-        with self.watch.on("solving"):
-            arms = ranked(self.task, [design.arm for design in designs], self.seed, self.watch)
-        whole: list[Design] = []
-        for found in arms[: max(1, _VERIFIED_AT_MOST // len(self.task.targets))]:
-            if whole and self.watch.is_up():
-                break
-            with self.watch.on("solving"):
-                arm = improved(self.task, found, self.watch)
-                if self.task.objective is Objective.MINIMAX:
-                    arm = levelled(self.task, arm, self.watch)
-            self.watch.tell(phase="verifying with all targets")
-            with self.watch.on("verifying"):
-                check = verify(self.task, arm)
-                # The steps know neither floor nor obstacles.
-                if not check.possible:
-                    arm, check = found, verify(self.task, found)
-            if check.possible:
-                whole.append(Design(arm, check))
-            else:
-                self.polishing.blocked.append(Design(arm, check))
-        return best_of(self.task, whole)
 
     def _report(self) -> None:
         worst = min(

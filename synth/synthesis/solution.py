@@ -10,7 +10,7 @@ import numpy as np
 from synth.arrays import FloatArray, frozen
 from synth.errors import SynthError
 from synth.sentences import SentenceEnum
-from synth.synthesis.verification import clear_of_everything
+from synth.synthesis.room import clear_of_everything
 
 if TYPE_CHECKING:
     from synth.robot import Arm

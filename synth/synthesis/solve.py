@@ -60,7 +60,7 @@ def solve(
     watch = Watch(time_limit, stop=stop, report=progress)
     search = Search(task, part_of(task, seed), seed, watch, alternatives)
     near = warm_start.designs if warm_start is not None and warm_start.task.robot == task.robot else ()
-    with search.kept():
+    with search.kept(), watch.keeping_back(search.kept_back):
         if not search.follow(near):
             search.run()
         if prove:
@@ -86,7 +86,7 @@ def follow(
         watch: Says when to end with what there is.
     """
     search = Search(task, part_of(task, seed), seed, watch or Watch())
-    with search.kept():
+    with search.kept(), search.watch.keeping_back(search.kept_back):
         if not search.follow(designs) and starts:
             search.run(starts)
     return search.solution()

@@ -15,18 +15,13 @@ from synth.arrays import FloatArray, frozen
 from synth.checks import refuse_unless
 from synth.robot import Arm, ArmBody
 from synth.rounding import Unit, rounded_up, told_apart
+from synth.synthesis.room import LENGTH_SLACK, Room, chosen_joints
 from synth.task import Task, Topology
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from synth.geometry import Solid
     from synth.robot import BasePose, Interval
 
-# What rounding may do: a micrometre, a microradian.
-_LENGTH_SLACK = 1e-6
-_ANGLE_SLACK = 1e-6
-_TOGETHER = 2000  # joint angles whose clearances are looked at together
+_ANGLE_SLACK = 1e-6  # what rounding may do, rad
 
 
 @dataclass(frozen=True)
@@ -58,6 +53,8 @@ class Verification:
         clearances: How far the arm at least keeps from the obstacles at each target, shape (n,), m;
             no more than 0.1 m is looked for, and without obstacles it is infinite.
         violations: Limits that the shape breaks; empty for a shape that the hardware can take.
+        unseen: How many more targets are asked for that were not looked at, for lack of time: with any, no
+            shape counts as found.
     """
 
     joints: FloatArray
@@ -67,6 +64,7 @@ class Verification:
     gamma_residuals: FloatArray
     clearances: FloatArray
     violations: tuple[Violation, ...]
+    unseen: int = 0
 
     @property
     def possible(self) -> bool:
@@ -76,7 +74,7 @@ class Verification:
     @property
     def found(self) -> bool:
         """Whether the shape is possible and reaches every target within its tolerance."""
-        return self.possible and all(self.within_tolerance)
+        return self.possible and all(self.within_tolerance) and not self.unseen
 
 
 def verify(task: Task, arm: Arm, joints: FloatArray | None = None, *, keep: bool = False) -> Verification:
@@ -98,34 +96,13 @@ def verify(task: Task, arm: Arm, joints: FloatArray | None = None, *, keep: bool
     """
     refuse_unless("task", task, Task)
     refuse_unless("arm", arm, Arm)
-    targets = task.table.positions
-    closest, _ = arm.closest_joints(targets)
-    branches = arm.inverse_kinematics(targets)
-    given = [] if joints is None else [joints]
-    candidates = np.stack([closest, *given, *np.moveaxis(branches.joints, -2, 0)])
-    points = arm.forward_kinematics(candidates[..., 0], candidates[..., 1])
-    misses = np.linalg.norm(points - targets, axis=-1)
-    misses[-2:][np.isinf(branches.miss.T)] = np.inf  # beyond the joint limits, or no branch at all
-    floor = -math.inf if task.floor is None else task.floor
-    sunk = arm.base.to_base(points)[..., 2] - ArmBody(arm).rod_radius < floor - _LENGTH_SLACK
-    misses = np.where(sunk, np.inf, misses)
-    if joints is not None and keep:
-        misses[1][misses[1] <= task.tolerances] = -1.0  # before all others
-    # The nearest candidate is mostly the one; the others are looked at where it is in the way of something.
-    each, best = np.arange(len(targets)), np.argmin(misses, axis=0)
-    room = _Room.of(task, arm, candidates[best, each])
-    stuck = np.flatnonzero(~(room.least >= -_LENGTH_SLACK))
-    if len(stuck):
-        room_of_all = _Room.of(task, arm, candidates[:, stuck])
-        blocked = room_of_all.least < -_LENGTH_SLACK
-        best[stuck] = np.argmin(np.where(blocked, np.inf, misses[:, stuck]), axis=0)
-        room = room.replaced(stuck, room_of_all.chosen(best[stuck]))
-    chosen = best, each
-    reached, blocked = points[chosen], sunk[chosen] | ~(room.least >= -_LENGTH_SLACK)
-    misses = np.linalg.norm(reached - targets, axis=-1)
+    chosen, sunk, room = chosen_joints(task, arm, joints, keep=keep)
+    reached = arm.forward_kinematics(chosen[:, 0], chosen[:, 1])
+    blocked = sunk | ~room.clear
+    misses = np.linalg.norm(reached - task.table.positions, axis=-1)
     within = (misses <= task.tolerances) & ~blocked
     return Verification(
-        joints=frozen(candidates[chosen]),
+        joints=frozen(chosen),
         reached=frozen(reached),
         misses=frozen(misses),
         within_tolerance=tuple(bool(value) for value in within),
@@ -135,69 +112,13 @@ def verify(task: Task, arm: Arm, joints: FloatArray | None = None, *, keep: bool
             *_base_violations(task.base, arm.base),
             *_length_violations(arm),
             *_bend_violations(arm),
-            *_joint_violations(arm, candidates[chosen]),
+            *_joint_violations(arm, chosen),
             *_floor_violations(task, arm, arm.base.to_base(reached)[:, 2]),
             *_topology_violations(task, arm),
             *_obstacle_violations(task, room),
             *_self_violations(task, room),
         ),
     )
-
-
-@dataclass(frozen=True)
-class _Room:
-    """What the arm keeps clear of, as lower bounds of distances, m; see `ArmBody`.
-
-    Attributes:
-        from_obstacles: Of tube and rod from each of the m obstacles, shape (..., n, m, 2).
-        rod_from_tube: Of the rigid link from the malleable one, shape (..., n).
-        tube_from_itself: Of the malleable link from itself and from the base.
-    """
-
-    from_obstacles: FloatArray
-    rod_from_tube: FloatArray
-    tube_from_itself: float
-
-    @classmethod
-    def of(cls, task: Task, arm: Arm, candidates: FloatArray) -> _Room:
-        """Return the room about an arm at joint angles, shape (..., n, 2), rad."""
-        body, solids, shape = ArmBody(arm), seen_by(task, arm), candidates.shape[:-1]
-        joints = candidates.reshape(-1, 2)
-        parts = np.split(joints, range(_TOGETHER, len(joints), _TOGETHER))
-        from_obstacles = np.concatenate([body.from_obstacles(part, solids) for part in parts])
-        rod_from_tube = np.concatenate([body.rod_from_tube(part[:, 1]) for part in parts])
-        return cls(
-            from_obstacles.reshape(*shape, len(solids), 2),
-            rod_from_tube.reshape(shape),
-            body.tube_from_itself(),
-        )
-
-    @property
-    def least(self) -> FloatArray:
-        """What joint angles can change, the least of it, shape (..., n), m."""
-        from_obstacles = self.from_obstacles.min(axis=(-2, -1), initial=math.inf)
-        return np.asarray(np.minimum(from_obstacles, self.rod_from_tube))
-
-    def chosen(self, best: NDArray[np.intp]) -> _Room:
-        """Return the room at one candidate for each target, shape (n,)."""
-        index = best, np.arange(len(best))
-        return _Room(self.from_obstacles[index], self.rod_from_tube[index], self.tube_from_itself)
-
-    def replaced(self, some: NDArray[np.intp], other: _Room) -> _Room:
-        """Return the room with that of some targets replaced."""
-        from_obstacles, rod_from_tube = self.from_obstacles.copy(), self.rod_from_tube.copy()
-        from_obstacles[some], rod_from_tube[some] = other.from_obstacles, other.rod_from_tube
-        return _Room(from_obstacles, rod_from_tube, self.tube_from_itself)
-
-
-def seen_by(task: Task, arm: Arm) -> tuple[Solid, ...]:
-    """Return the obstacles of a task in the base frame of an arm, wherever that stands."""
-    return tuple(obstacle.solid.seen_from(arm.base.position, arm.base.yaw) for obstacle in task.obstacles)
-
-
-def clear_of_everything(task: Task, arm: Arm, joints: FloatArray) -> NDArray[np.bool_]:
-    """Return whether an arm at joint angles, shape (n, 2), rad, keeps clear of obstacles and of itself."""
-    return np.asarray(_Room.of(task, arm, joints).least >= -_LENGTH_SLACK)
 
 
 def _exceeds(limit: str, value: float, bound: float, slack: float, sentence: str) -> list[Violation]:
@@ -217,7 +138,7 @@ def _base_violations(asked: BasePose, stands: BasePose) -> list[Violation]:
     turned = abs(math.remainder(stands.yaw - asked.yaw, 2.0 * math.pi))
     return [
         *_exceeds(
-            "base: position", moved, 0.0, _LENGTH_SLACK,
+            "base: position", moved, 0.0, LENGTH_SLACK,
             f"the arm stands {1e3 * moved:.4g} mm from where the task puts it",
         ),
         *_exceeds(
@@ -235,7 +156,7 @@ def _length_violations(arm: Arm) -> list[Violation]:
         ("d45", robot.rigid_link.d45, arm.d45),
     ):
         violations += _exceeds(
-            f"length: {name}", _outside(interval, value), 0.0, _LENGTH_SLACK,
+            f"length: {name}", _outside(interval, value), 0.0, LENGTH_SLACK,
             _of_its_limits(f"the length of {name} would have to be", value, interval),
         )  # fmt: skip
     return violations
@@ -251,7 +172,7 @@ def _bend_violations(arm: Arm) -> list[Violation]:
     link, shape = arm.robot.link, arm.shape
     return [
         *_exceeds(
-            "min_bend_radius", link.min_bend_radius, shape.min_bend_radius, _LENGTH_SLACK,
+            "min_bend_radius", link.min_bend_radius, shape.min_bend_radius, LENGTH_SLACK,
             "the link would need a bend radius of {} mm; {} mm is its limit".format(
                 *told_apart(shape.min_bend_radius, link.min_bend_radius)),
         ),
@@ -291,7 +212,7 @@ def _floor_violations(task: Task, arm: Arm, end_effector: FloatArray) -> list[Vi
     for part, height in heights.items():
         depth = task.floor - height
         violations += _exceeds(
-            f"floor: {part}", depth, 0.0, _LENGTH_SLACK,
+            f"floor: {part}", depth, 0.0, LENGTH_SLACK,
             f"the {part} would be {rounded_up(depth, digits=2)} mm below the floor",
         )  # fmt: skip
     return violations
@@ -302,9 +223,9 @@ def _topology_violations(task: Task, arm: Arm) -> list[Violation]:
     off = arm.category_distances
     match task.topology:
         case Topology.SPHERICAL:
-            amount, slack = off.spherical, _LENGTH_SLACK
+            amount, slack = off.spherical, LENGTH_SLACK
         case Topology.PUMA:
-            amount, slack = off.puma, _LENGTH_SLACK
+            amount, slack = off.puma, LENGTH_SLACK
         case Topology.SCARA:
             amount, slack = off.scara, _ANGLE_SLACK
         case Topology.GENERAL:
@@ -316,32 +237,32 @@ def _topology_violations(task: Task, arm: Arm) -> list[Violation]:
     )
 
 
-def _obstacle_violations(task: Task, room: _Room) -> list[Violation]:
+def _obstacle_violations(task: Task, room: Room) -> list[Violation]:
     """Check that tube and rod keep clear of the obstacles at each target: one violation for each."""
     violations = []
     least = room.from_obstacles.min(axis=(-2, -1), initial=math.inf)
-    for index in np.flatnonzero(~(least >= -_LENGTH_SLACK)).tolist():
+    for index in np.flatnonzero(~(least >= -LENGTH_SLACK)).tolist():
         clearances = room.from_obstacles[index]
         worst, part = np.unravel_index(np.argmin(clearances), clearances.shape)
         obstacle, depth = task.obstacles[worst].name, -float(clearances[worst, part])
         violations += _exceeds(
-            f"obstacle: {obstacle}", depth, 0.0, _LENGTH_SLACK,
-            f"at {task.targets[index].name} the {('malleable', 'rigid')[part]} link would be "
+            f"obstacle: {obstacle}", depth, 0.0, LENGTH_SLACK,
+            f"at {task.table.names[index]} the {('malleable', 'rigid')[part]} link would be "
             f"{rounded_up(depth, digits=2)} mm inside {obstacle}",
         )  # fmt: skip
     return violations
 
 
-def _self_violations(task: Task, room: _Room) -> list[Violation]:
+def _self_violations(task: Task, room: Room) -> list[Violation]:
     violations = _exceeds(
-        "itself", -room.tube_from_itself, 0.0, _LENGTH_SLACK,
+        "itself", -room.tube_from_itself, 0.0, LENGTH_SLACK,
         f"the malleable link would be {rounded_up(-room.tube_from_itself, digits=2)} mm inside itself "
         "or the base",
     )  # fmt: skip
-    for index in np.flatnonzero(~(room.rod_from_tube >= -_LENGTH_SLACK)).tolist():
-        name, depth = task.targets[index].name, -float(room.rod_from_tube[index])
+    for index in np.flatnonzero(~(room.rod_from_tube >= -LENGTH_SLACK)).tolist():
+        name, depth = task.table.names[index], -float(room.rod_from_tube[index])
         violations += _exceeds(
-            "itself", depth, 0.0, _LENGTH_SLACK,
+            "itself", depth, 0.0, LENGTH_SLACK,
             f"at {name} the rigid link would be {rounded_up(depth, digits=2)} mm inside the malleable one",
         )  # fmt: skip
     return violations

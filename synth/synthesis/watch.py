@@ -80,7 +80,7 @@ class Watch:
         self._time_limit = time_limit
         self._spent = {"screening": 0.0, "solving": 0.0, "verifying": 0.0, "proving": 0.0}
         self._progress = Progress()
-        self._interrupted = False
+        self._wished = self._up = self._interrupted = False
         self.raised: BaseException | None = None
 
     @property
@@ -94,11 +94,23 @@ class Watch:
         return self._interrupted
 
     def is_up(self) -> bool:
-        """Whether to end with what there is; it stays so."""
-        if not self._interrupted:
-            wish = self._stop is not None and self._users(self._stop)
-            self._interrupted = wish or self.remaining <= 0.0
-        return self._interrupted
+        """Whether to end with what there is; it stays so, within a block of `keeping_back` until its end."""
+        if not self._wished and self._stop is not None:
+            self._wished = self._users(self._stop)
+        self._up = self._up or self._wished or self.remaining <= 0.0
+        self._interrupted = self._interrupted or self._up
+        return self._up
+
+    @contextmanager
+    def keeping_back(self, share: float) -> Iterator[None]:
+        """Within a block, be up while a share of the time left is still there: what follows needs it."""
+        seconds = share * self.remaining if math.isfinite(self.remaining) else 0.0
+        self._time_limit -= seconds
+        try:
+            yield
+        finally:
+            self._time_limit += seconds
+            self._up = False
 
     def tell(self, **changes: Any) -> None:
         """Tell how far the run is: what has changed of the `Progress` told before, or that it is alive."""
@@ -139,4 +151,4 @@ class Watch:
 
         What that run tells of itself is told as a sign of life of this one.
         """
-        return Watch(stop=self.is_up, report=lambda _: self.tell(), clock=self._clock)
+        return Watch(self.remaining, stop=self.is_up, report=lambda _: self.tell(), clock=self._clock)

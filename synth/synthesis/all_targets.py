@@ -1,0 +1,115 @@
+"""From shapes found for a part of very many targets to shapes that are verified with all of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.synthesis.many_targets import improved, levelled, random_part, ranked
+from synth.synthesis.ranking import best_of
+from synth.synthesis.solution import Design
+from synth.synthesis.verification import verify
+from synth.task import Objective
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from synth.robot import Arm
+    from synth.synthesis.watch import Watch
+    from synth.task import Task
+
+# Targets of all shapes together that are looked at where the search knew only a part of them.
+_VERIFIED_AT_MOST = 20_000
+# So many are verified first, to see how long one takes; then others in this part of the time left.
+_FIRST, _OF_TIME_LEFT = 2_000, 0.7
+
+
+@dataclass
+class WholeTask:
+    """Shapes for all targets of a task.
+
+    Attributes:
+        task: The task with all its targets; where there was no time to look at all of them, with those that
+            the designs are verified with.
+        designs: The shapes that the hardware can take, in order.
+        blocked: Those that it cannot.
+    """
+
+    task: Task
+    designs: tuple[Design, ...] = ()
+    blocked: list[Design] = field(default_factory=list)
+
+    @property
+    def unseen(self) -> int:
+        """How many targets there was no time to look at."""
+        return self.designs[0].verification.unseen if self.designs else 0
+
+    @property
+    def note(self) -> str:
+        """What is to be said of targets that were not looked at; nothing if there are none."""
+        if not self.unseen:
+            return ""
+        count = len(self.task.targets)
+        return (
+            f"only {count} of {count + self.unseen} targets, chosen at random, were looked at in the time: "
+            "what is said of the shape is said of these alone"
+        )
+
+
+def for_all_targets(task: Task, designs: Sequence[Design], seed: int, watch: Watch) -> WholeTask:
+    """Return designs improved for all targets, and verified with them or with as many as there is time for.
+
+    Args:
+        task: The task with all its targets.
+        designs: Shapes that were found for a part of them, the best first.
+        seed: As for `ranked`.
+        watch: When it is up one shape is still verified, if only with some of the targets.
+    """
+    with watch.on("solving"):
+        arms = ranked(task, [design.arm for design in designs], seed, watch)
+    whole, verified = WholeTask(task), []
+    for found in arms[: max(1, _VERIFIED_AT_MOST // len(task.targets))]:
+        if verified and watch.is_up():
+            break
+        with watch.on("solving"):
+            arm = improved(task, found, watch)
+            if task.objective is Objective.MINIMAX:
+                arm = levelled(task, arm, watch)
+        watch.tell(phase="verifying with all targets")
+        with watch.on("verifying"):
+            seen, design = verified_in_time(task, arm, watch)
+            if not design.verification.possible:  # the steps know neither floor nor obstacles
+                seen, design = verified_in_time(task, found, watch)
+        unseen = design.verification.unseen
+        if not design.verification.possible:
+            whole.blocked.append(design)
+        elif not unseen:
+            verified.append(design)
+        elif not verified:
+            return replace(whole, task=seen, designs=best_of(seen, [design]))
+    return replace(whole, designs=best_of(task, verified))
+
+
+def verified_in_time(task: Task, arm: Arm, watch: Watch) -> tuple[Task, Design]:
+    """Verify a shape with all targets, or at random with as many as there is time for, some 2000 at least.
+
+    Returns:
+        The task with the targets that were looked at, and the design; it counts as found only if these are
+        all.
+    """
+    first = random_part(task, _FIRST, 0)
+    if first is task or watch.remaining == np.inf:
+        return task, Design(arm, verify(task, arm))
+    before = watch.remaining
+    check = verify(first, arm)
+    spent = before - watch.remaining
+    count = len(task.targets)
+    if _OF_TIME_LEFT * watch.remaining * _FIRST >= spent * count:
+        return task, Design(arm, verify(task, arm))
+    affordable = int(_OF_TIME_LEFT * watch.remaining * _FIRST / spent)
+    if affordable > _FIRST:
+        first = random_part(task, affordable, 0)
+        check = verify(first, arm)
+    return first, Design(arm, replace(check, unseen=count - len(first.targets)))

@@ -1,0 +1,150 @@
+"""The room about an arm, and where it has any: at the joint angles nearest to each target that are clear.
+
+It is a part of the independent check: plain numpy, through no expression of the solver.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.robot import Arm, ArmBody
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from synth.arrays import FloatArray
+    from synth.geometry import Solid
+    from synth.task import Task
+
+LENGTH_SLACK = 1e-6  # what rounding may do, m
+_TOGETHER = 2000  # joint angles whose clearances are looked at together
+# Of more joint angles than that the ranges that they lie in are looked at first: whole ranges of joint 2, so
+# many of them, in which the arm is clear of itself by a little, m.
+_RANGES, _CLEARLY = 500, 1e-3
+
+
+def chosen_joints(
+    task: Task, arm: Arm, given: FloatArray | None, *, keep: bool
+) -> tuple[FloatArray, NDArray[np.bool_], Room]:
+    """Return the joint angles at which an arm is nearest to each target, of those where it is clear.
+
+    Args:
+        task: The task.
+        arm: The robot in a shape.
+        given: Joint angles to consider, too, shape (n, 2), rad.
+        keep: Whether these come first wherever they reach the target within its tolerance.
+
+    Returns:
+        The angles, shape (n, 2), rad; at which targets none keeps the end effector above the floor, shape
+        (n,); and the room about the arm there.
+    """
+    targets = task.table.positions
+    closest, _ = arm.closest_joints(targets)
+    candidates = np.stack([closest] if given is None else [closest, given])
+    misses = _misses(task, arm, candidates, targets)
+    if given is not None and keep:
+        misses[1][misses[1] <= task.tolerances] = -1.0  # before all others
+    best, each = np.argmin(misses, axis=0), np.arange(len(targets))
+    chosen, sunk = candidates[best, each], np.isinf(misses[best, each])
+    room = Room.of(task, arm, chosen)
+    # The nearest one mostly does; the branches of the inverse kinematics are looked at where it does not.
+    stuck = np.flatnonzero(sunk | ~room.clear)
+    if len(stuck):
+        branches = arm.inverse_kinematics(targets[stuck])
+        others = np.moveaxis(branches.joints, -2, 0)
+        off = _misses(task, arm, others, targets[stuck])
+        off[np.isinf(branches.miss.T)] = np.inf  # beyond the joint limits, or no branch at all
+        candidates, misses = (
+            np.concatenate(pair) for pair in ((candidates[:, stuck], others), (misses[:, stuck], off))
+        )
+        around = Room.of(task, arm, candidates)
+        best, each = np.argmin(np.where(around.clear, misses, np.inf), axis=0), np.arange(len(stuck))
+        chosen[stuck], sunk[stuck] = candidates[best, each], np.isinf(misses[best, each])
+        room = room.replaced(stuck, around.chosen(best))
+    return chosen, sunk, room
+
+
+def _misses(task: Task, arm: Arm, candidates: FloatArray, targets: FloatArray) -> FloatArray:
+    """Return the misses at joint angles of shape (k, n, 2), shape (k, n), m; infinite below the floor."""
+    points = arm.forward_kinematics(candidates[..., 0], candidates[..., 1])
+    floor = -math.inf if task.floor is None else task.floor
+    sunk = arm.base.to_base(points)[..., 2] - ArmBody(arm).rod_radius < floor - LENGTH_SLACK
+    return np.where(sunk, np.inf, np.linalg.norm(points - targets, axis=-1))
+
+
+def _rod_from_tube(body: ArmBody, theta2: FloatArray) -> FloatArray:
+    """Return how far the rod keeps from the tube, shape (n,), m: lower bounds, less close ones if many."""
+    if len(theta2) <= _TOGETHER:
+        return body.rod_from_tube(theta2)
+    edges = np.linspace(theta2.min(), theta2.max(), _RANGES + 1)
+    of_ranges = body.rod_from_tube(edges[:-1], edges[1:], enough=_CLEARLY)
+    bounds = of_ranges[np.clip(np.searchsorted(edges, theta2, side="right") - 1, 0, _RANGES - 1)]
+    close = np.flatnonzero(~(bounds >= 0.0))
+    for part in np.split(close, range(_TOGETHER, len(close), _TOGETHER)):
+        bounds[part] = body.rod_from_tube(theta2[part])
+    return bounds
+
+
+@dataclass(frozen=True)
+class Room:
+    """What the arm keeps clear of, as lower bounds of distances, m; see `ArmBody`.
+
+    Attributes:
+        from_obstacles: Of tube and rod from each of the m obstacles, shape (..., n, m, 2).
+        rod_from_tube: Of the rigid link from the malleable one, shape (..., n).
+        tube_from_itself: Of the malleable link from itself and from the base.
+    """
+
+    from_obstacles: FloatArray
+    rod_from_tube: FloatArray
+    tube_from_itself: float
+
+    @classmethod
+    def of(cls, task: Task, arm: Arm, candidates: FloatArray) -> Room:
+        """Return the room about an arm at joint angles, shape (..., n, 2), rad."""
+        body, solids, shape = ArmBody(arm), seen_by(task, arm), candidates.shape[:-1]
+        joints = candidates.reshape(-1, 2)
+        parts = np.split(joints, range(_TOGETHER, len(joints), _TOGETHER))
+        from_obstacles = np.concatenate([body.from_obstacles(part, solids) for part in parts])
+        rod_from_tube = _rod_from_tube(body, joints[:, 1])
+        return cls(
+            from_obstacles.reshape(*shape, len(solids), 2),
+            rod_from_tube.reshape(shape),
+            body.tube_from_itself(),
+        )
+
+    @property
+    def least(self) -> FloatArray:
+        """What joint angles can change, the least of it, shape (..., n), m."""
+        from_obstacles = self.from_obstacles.min(axis=(-2, -1), initial=math.inf)
+        return np.asarray(np.minimum(from_obstacles, self.rod_from_tube))
+
+    @property
+    def clear(self) -> NDArray[np.bool_]:
+        """Whether the arm keeps clear of obstacles and of itself, but for rounding, shape (..., n)."""
+        return np.asarray(self.least >= -LENGTH_SLACK)
+
+    def chosen(self, best: NDArray[np.intp]) -> Room:
+        """Return the room at one candidate for each target, shape (n,)."""
+        index = best, np.arange(len(best))
+        return Room(self.from_obstacles[index], self.rod_from_tube[index], self.tube_from_itself)
+
+    def replaced(self, some: NDArray[np.intp], other: Room) -> Room:
+        """Return the room with that of some targets replaced."""
+        from_obstacles, rod_from_tube = self.from_obstacles.copy(), self.rod_from_tube.copy()
+        from_obstacles[some], rod_from_tube[some] = other.from_obstacles, other.rod_from_tube
+        return Room(from_obstacles, rod_from_tube, self.tube_from_itself)
+
+
+def seen_by(task: Task, arm: Arm) -> tuple[Solid, ...]:
+    """Return the obstacles of a task in the base frame of an arm, wherever that stands."""
+    return tuple(obstacle.solid.seen_from(arm.base.position, arm.base.yaw) for obstacle in task.obstacles)
+
+
+def clear_of_everything(task: Task, arm: Arm, joints: FloatArray) -> NDArray[np.bool_]:
+    """Return whether an arm at joint angles, shape (n, 2), rad, keeps clear of obstacles and of itself."""
+    return Room.of(task, arm, joints).clear
