@@ -50,6 +50,10 @@ class InputError(SynthError):
         super().__init__("\n".join(str(mistake) for mistake in self.mistakes))
 
 
+class TimeLimitError(SynthError):
+    """The time was up before there was anything to return."""
+
+
 class SolverError(SynthError):
     """The solver broke down in a way that says nothing about the task."""
 

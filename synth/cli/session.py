@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from synth.cli.exit_codes import ExitCode
 from synth.cli.say import say
-from synth.errors import SolverError, SynthError, in_a_line
+from synth.errors import SolverError, SynthError, TimeLimitError, in_a_line
 from synth.rounding import at_least, at_most
 
 if TYPE_CHECKING:
@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from synth.synthesis import Progress
 
 _T = TypeVar("_T")
-_WRITING = 1.0  # s, that drawing the sheet and writing take on a usual machine
+# What drawing the sheet and writing take on a usual machine, s; and of many targets each.
+_WRITING, _WRITING_ONE = 1.0, 3e-5
 DEBUG = "SYNTH_DEBUG"  # if this is set in the environment, what nobody foresaw is shown with its traceback
 
 
@@ -56,10 +57,17 @@ class Session:
         """The time left, s; never below 0."""
         return max(self._until - self._clock(), 0.0)
 
-    @property
-    def for_search(self) -> float:
-        """The time left for a search, s: what is found is then still to be drawn and written."""
-        return max(self.remaining - _WRITING, 0.5 * self.remaining)
+    def is_up(self) -> bool:
+        """Whether the time is up, or the user wishes to stop."""
+        return self.stop() or self.remaining <= 0.0
+
+    def for_search(self, count: int) -> float:
+        """Return the time left for a search, s: what is found is then still to be drawn and written.
+
+        Args:
+            count: How many targets there are, all of which are written.
+        """
+        return max(self.remaining - _WRITING - count * _WRITING_ONE, 0.5 * self.remaining)
 
     @contextmanager
     def interruptible(self) -> Iterator[None]:
@@ -117,6 +125,9 @@ def run(command: Callable[[Session], ExitCode], time_limit: float) -> ExitCode:
     try:
         with session.interruptible():
             return command(session)
+    except TimeLimitError as error:
+        say(str(error), on_stderr=True)
+        return ExitCode.NOT_MET
     except SynthError as error:
         say(str(error), on_stderr=True)
         return ExitCode.BROKEN if isinstance(error, SolverError) else ExitCode.WRONG_INPUT

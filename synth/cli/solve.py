@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 from dataclasses import replace
@@ -51,7 +50,7 @@ def solve_file(
     from synth.export import SOLUTION_FILES, prepare_directory
     from synth.task import load_task
 
-    task = load_task(file)
+    task = load_task(file, is_up=session.is_up)
     if output is not None:
         prepare_directory(output, SOLUTION_FILES)
     from synth.synthesis import Status, explain, showing, solve
@@ -61,7 +60,7 @@ def solve_file(
             task,
             seed=seed,
             prove=prove,
-            time_limit=session.for_search,
+            time_limit=session.for_search(len(task.targets)),
             stop=session.stop,
             progress=progress,
         )
@@ -69,7 +68,12 @@ def solve_file(
             found = solution
             solution = session.attempt(
                 "looking for what would release the task",
-                lambda: explain(found, time_limit=session.for_search, stop=session.stop, progress=progress),
+                lambda: explain(
+                    found,
+                    time_limit=session.for_search(len(found.task.targets)),
+                    stop=session.stop,
+                    progress=progress,
+                ),
                 replace(
                     found,
                     explained=True,
@@ -122,12 +126,12 @@ def _write(session: Session, solution: Solution, output: Path) -> bool:
 def _say(session: Session, solution: Solution, *, form: str, show_all: bool) -> bool:
     """Print the answer; whether it was delivered."""
     from synth.cli.terminal import as_shown
-    from synth.export import solution_to_json
+    from synth.export import json_text, solution_to_json
     from synth.guide import solution_text
 
     def text() -> str:
         if form == "json":
-            return json.dumps(solution_to_json(solution), indent=2, allow_nan=False)
+            return json_text(solution_to_json(solution), indent=2)
         return as_shown(solution_text(solution, alternatives=show_all), sys.stdout)
 
     said = say(session.attempt("putting the answer into words", text, solution.message))

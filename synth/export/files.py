@@ -22,6 +22,7 @@ from synth.synthesis import Solution
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+_MOST_INDENTED = 1000  # targets in a file that is laid out for the eye
 SOLUTION_FILES = ("solution.json", "guide.pdf", "markers.csv")
 
 
@@ -146,8 +147,21 @@ def _restored_if_it_fails(paths: Sequence[Path]) -> Iterator[None]:
 
 def json_bytes(content: Mapping[str, object]) -> bytes:
     """Return plain data as the bytes of a JSON file."""
-    text = json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+    text = json_text(content, indent=1, ensure_ascii=False) + "\n"
     return text.encode("utf-8", "backslashreplace")  # half a character of a foreign name is no reason to fail
+
+
+def json_text(content: Mapping[str, object], *, indent: int, ensure_ascii: bool = True) -> str:
+    """Return plain data as JSON; very much of it on one line, which is written twenty times as fast.
+
+    Args:
+        content: The data.
+        indent: By how much each level is indented.
+        ensure_ascii: Whether other characters are escaped.
+    """
+    task = content.get("task")
+    many = isinstance(task, dict) and len(task.get("targets", ())) > _MOST_INDENTED
+    return json.dumps(content, indent=None if many else indent, allow_nan=False, ensure_ascii=ensure_ascii)
 
 
 def prepare_directory(directory: str | os.PathLike[str], names: Iterable[str] = ()) -> None:

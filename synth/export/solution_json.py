@@ -5,15 +5,19 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from synth.checks import refuse_unless
 from synth.export.plain import plain
 from synth.export.task_json import arcs_to_json, task_to_json
 from synth.guide import MARKERS, make_guide
 from synth.synthesis import Bound, Solution
-from synth.synthesis.solution import target_results
+from synth.synthesis.solution import target_results, worst_targets
 from synth.version import __version__
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from synth.guide import Guide
     from synth.robot import Arm
     from synth.synthesis import Design, Motion
@@ -22,6 +26,7 @@ if TYPE_CHECKING:
 SCHEMA = "synth.solution/2"
 _CENTRELINE_SPACING = 0.01  # m
 _MOST_OF_CENTRELINE = 1000  # points: of a link longer than 10 m they are farther apart
+MOST_TARGETS = 10_000  # of which it is told in full what becomes of them; of more, the worst
 # What is fixed or shaped: all pairs but 15 and 25, which change as the robot moves.
 _PAIRS = ("12", "13", "14", "23", "24", "34", "35", "45")
 
@@ -54,6 +59,7 @@ def solution_to_json(solution: Solution) -> dict[str, Any]:
         "time": solution.time,
         **shape,
         "targets": _targets(task, designs[0]) if designs else _targets_missed(task),
+        "targets_left_out": max(len(task.targets) - MOST_TARGETS, 0),
         "ways": None if guide is None else [_way(motion) for motion in guide.ways],
         "figures": designs[0].figures if designs else None,
         "bound": _bound(solution.bound),
@@ -113,7 +119,7 @@ def _shape(guide: Guide) -> dict[str, object]:
 
 def _alternative(task: Task, number: int, design: Design) -> dict[str, object]:
     """Return another shape in short: enough to choose it, and to rebuild it from its arcs."""
-    squared = _squared_distances(design.arm)
+    squared, check = _squared_distances(design.arm), design.verification
     return {
         "shape": number,
         "distances": {pair: math.sqrt(s) for pair, s in squared.items()},
@@ -121,10 +127,12 @@ def _alternative(task: Task, number: int, design: Design) -> dict[str, object]:
         "link": _link(design.arm),
         "figures": design.figures,
         "targets": [
-            {"name": target.name, "miss": miss, "within_tolerance": within}
-            for target, miss, within in zip(
-                task.targets, design.verification.misses, design.verification.within_tolerance, strict=True
-            )
+            {
+                "name": task.table.names[index],
+                "miss": check.misses[index],
+                "within_tolerance": check.within_tolerance[index],
+            }
+            for index in _listed(task, design).tolist()
         ],
     }
 
@@ -143,9 +151,14 @@ def _link(arm: Arm) -> dict[str, object]:
     }
 
 
+def _listed(task: Task, design: Design) -> NDArray[np.intp]:
+    """Return the indices of the targets that are told of in full, in their order: the worst ones if many."""
+    return np.sort(worst_targets(task, design, MOST_TARGETS))
+
+
 def _targets(task: Task, design: Design) -> list[object]:
     # The fields of a TargetResult bear the names of the contract.
-    return list(target_results(task, design))
+    return list(target_results(task, design, _listed(task, design)))
 
 
 def _targets_missed(task: Task) -> list[object]:
@@ -161,7 +174,7 @@ def _targets_missed(task: Task) -> list[object]:
             "joints": None,
             "alternatives": [],
         }
-        for target in task.targets
+        for target in task.targets[:MOST_TARGETS]
     ]
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from synth.export.typesetting import shortened
 from synth.guide.text import clearance_told
 from synth.rounding import rounded_down, rounded_up
+from synth.synthesis.solution import target_results, worst_targets
 from synth.task import DEFAULT_TOLERANCE
 
 if TYPE_CHECKING:
@@ -29,8 +30,7 @@ def listed_targets(solution: Solution) -> Sequence[int]:
     count = len(solution.task.targets)
     if count <= _MOST_TARGETS or not solution.designs:
         return range(min(count, _MOST_TARGETS))
-    worst = np.argsort(-solution.best.verification.misses / solution.task.tolerances, kind="stable")
-    return sorted(int(index) for index in worst[:_MOST_TARGETS])
+    return sorted(worst_targets(solution.task, solution.best, _MOST_TARGETS).tolist())
 
 
 def target_table(page: Page, x: float, y: float, solution: Solution) -> float:
@@ -39,7 +39,7 @@ def target_table(page: Page, x: float, y: float, solution: Solution) -> float:
     Joint angles and clearances are those of a task that is met: nobody drives to a target that is missed.
     """
     task, listed = solution.task, listed_targets(solution)
-    results = solution.targets if solution.designs else None
+    results = target_results(task, solution.best, np.array(listed)) if solution.designs else None
     heading = "Targets"
     if len(listed) < len(task.targets):
         count = f"{len(listed)} of {len(task.targets)}"
@@ -60,7 +60,7 @@ def target_table(page: Page, x: float, y: float, solution: Solution) -> float:
         if results is None:
             page.text(x + 56.0, line, "no shape", _SIZE, ha="right", weight="bold")
             continue
-        result = results[index]
+        result = results[row - 1]
         no, weight = ("", "normal") if result.within_tolerance else ("NO  ", "bold")
         page.text(
             x + 56.0, line, f"{no}{rounded_up(result.miss, digits=2)}", _SIZE, ha="right", weight=weight

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 def task_to_json(task: Task) -> dict[str, object]:
     """Return a task as data for `plain`: arrays, mappings and numbers, every default written out."""
+    table = task.table  # of a million points: in columns
     return {
         "name": task.name,
         "robot": _robot(task.robot),
@@ -27,13 +28,14 @@ def task_to_json(task: Task) -> dict[str, object]:
         "topology": task.topology.value,
         "objective": task.objective.value,
         "targets": [
-            {
-                "name": target.name,
-                "position": target.position,
-                "tolerance": target.tolerance,
-                "weight": target.weight,
-            }
-            for target in task.targets
+            {"name": name, "position": position, "tolerance": tolerance, "weight": weight}
+            for name, position, tolerance, weight in zip(
+                table.names,
+                table.positions.tolist(),
+                table.tolerances.tolist(),
+                table.weights.tolist(),
+                strict=True,
+            )
         ],
         "obstacles": [_obstacle(obstacle) for obstacle in task.obstacles],
         "current": None if task.current is None else {"arcs": arcs_to_json(task.current)},

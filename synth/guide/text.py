@@ -15,14 +15,14 @@ from synth.guide.instructions import base_sentence, hand_sentence, instructions,
 from synth.robot import MOST_CLEARANCE
 from synth.rounding import Unit, rounded_down, rounded_up
 from synth.synthesis import Status
+from synth.synthesis.solution import target_results, worst_targets
 from synth.synthesis.verdict import ending
 from synth.task import DEFAULT_TOLERANCE
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from synth.guide.guide import Guide
-    from synth.synthesis.solution import Design, Solution, TargetResult
+    from synth.synthesis.solution import Design, Solution
+    from synth.task import Task
 
 FOUND, MISSED, BULLET = "✓", "✗", "•"
 _MOST_TARGETS = 10
@@ -43,7 +43,7 @@ def summary_text(solution: Solution, guide: Guide | None = None) -> str:
     headline = f"{FOUND if solution.found else MISSED} {headline_of(solution)}"
     lines = [headline, "=" * min(len(headline), 79), *map(_bullet, knowledge(solution))]
     if solution.designs:
-        lines += _target_lines(solution.targets)
+        lines += _target_lines(solution.task, solution.best)
     else:
         asked = _counted(len(solution.task.targets), "target")
         lines.append(_bullet(f"{asked} asked for, none reached: there is no shape"))
@@ -213,16 +213,17 @@ def _counted(count: int, what: str) -> str:
     return f"{count} {what}" if count == 1 else f"{count} {what}s"
 
 
-def _target_lines(targets: Sequence[TargetResult]) -> list[str]:
+def _target_lines(task: Task, design: Design) -> list[str]:
     """Return a line for each target, names and numbers in columns; of many targets the worst only."""
-    lines = []
-    if len(targets) > _MOST_TARGETS:
-        reached = sum(target.within_tolerance for target in targets)
+    lines, count, shown = [], len(task.targets), None
+    if count > _MOST_TARGETS:
+        reached = sum(design.verification.within_tolerance)
         are = "is" if reached == 1 else "are"
         lines = [
-            _bullet(f"{reached} of {len(targets)} targets {are} within tolerance; the {_MOST_TARGETS} worst:")
+            _bullet(f"{reached} of {count} targets {are} within tolerance; the {_MOST_TARGETS} worst:")
         ]
-        targets = sorted(targets, key=lambda target: -target.miss / target.tolerance)[:_MOST_TARGETS]
+        shown = worst_targets(task, design, _MOST_TARGETS)
+    targets = target_results(task, design, shown)
     width = max(len(target.name) for target in targets)
     for target in targets:
         theta1, theta2 = (math.degrees(angle) for angle in target.joints)

@@ -102,9 +102,9 @@ def verified_in_time(task: Task, arm: Arm, watch: Watch) -> tuple[Task, Design]:
     first = random_part(task, _FIRST, 0)
     if first is task or watch.remaining == np.inf:
         return task, Design(arm, verify(task, arm))
-    before = watch.remaining
+    began = watch.elapsed
     check = verify(first, arm)
-    spent = before - watch.remaining
+    spent = watch.elapsed - began
     count = len(task.targets)
     if _OF_TIME_LEFT * watch.remaining * _FIRST >= spent * count:
         return task, Design(arm, verify(task, arm))

@@ -12,7 +12,7 @@ from synth.task import as_task
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from synth.task import Task
 
@@ -24,15 +24,16 @@ def checked_task(
     warm_start: Solution | None,
     alternatives: int,
     time_limit: float,
+    is_up: Callable[[], bool],
 ) -> Task:
-    """Return the task to solve, with all else that `solve` is given found right.
+    """Return the task to solve, with all else that `solve` is given found right; `is_up` as for `as_task`.
 
     Raises:
         InputError: With every mistake, those of the task first.
     """
     mistakes: list[Mistake] = []
     try:
-        task = as_task(source)
+        task = as_task(source, is_up=is_up)
     except InputError as error:
         mistakes.extend(error.mistakes)
     wrong = {

@@ -108,14 +108,11 @@ def hand_forgiveness(task: Task, arm: Arm, joints: FloatArray | None = None) -> 
     frame, end = arm.end_frame
     circle = arm.circle
     kinematics = Kinematics(frame[None], circle.centre[None], np.array([circle.radius]))
-    positions = arm.base.to_base(task.table.positions)
-    if joints is None:
-        joints, _ = arm.closest_joints(task.table.positions)
-    some = _some(len(positions))
-    aims = Aims(positions[some], task.robot.joint_limits)
-    worst, within = misses_after_a_hand(
-        aims, task.tolerances[some], kinematics, end[None], joints[None, some, 1]
-    )
+    some = _some(len(task.targets))
+    positions = task.table.positions[some]
+    there = arm.closest_joints(positions)[0] if joints is None else joints[some]
+    aims = Aims(arm.base.to_base(positions), task.robot.joint_limits)
+    worst, within = misses_after_a_hand(aims, task.tolerances[some], kinematics, end[None], there[None, :, 1])
     return Forgiveness(float(worst[0]), float(within[0]))
 
 

@@ -13,6 +13,8 @@ from synth.sentences import SentenceEnum
 from synth.synthesis.room import clear_of_everything
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from synth.robot import Arm
     from synth.synthesis.bound import Bound
     from synth.synthesis.figures import Figures
@@ -205,42 +207,57 @@ class Solution:
         return self
 
 
-def joints_reaching(task: Task, design: Design) -> list[FloatArray]:
+def joints_reaching(task: Task, design: Design, chosen: NDArray[np.intp] | None = None) -> list[FloatArray]:
     """Return for each target all joint angles at which it is reached, clear of everything, the best first.
 
     Args:
         task: The task.
         design: The shape.
+        chosen: Indices of the targets that are asked for; by default all of them.
 
     Returns:
         Pairs (theta1, theta2), shape (k, 2), rad; the closest alone where the target is missed.
     """
     check = design.verification
-    branches = design.arm.inverse_kinematics(task.table.positions)
-    other = np.abs(branches.joints - check.joints[:, None]).max(axis=-1) > 1e-3
-    other &= branches.miss <= task.tolerances[:, None]
-    other &= np.array(check.within_tolerance)[:, None]
+    chosen = np.arange(len(task.targets)) if chosen is None else chosen
+    best = check.joints[chosen]
+    branches = design.arm.inverse_kinematics(task.table.positions[chosen])
+    other = np.abs(branches.joints - best[:, None]).max(axis=-1) > 1e-3
+    other &= branches.miss <= task.tolerances[chosen, None]
+    other &= np.array(check.within_tolerance)[chosen, None]
     other[other] = clear_of_everything(task, design.arm, branches.joints[other])
-    return [
-        np.vstack([joints, branches.joints[index][other[index]]]) for index, joints in enumerate(check.joints)
-    ]
+    return [np.vstack([joints, branches.joints[index][other[index]]]) for index, joints in enumerate(best)]
 
 
-def target_results(task: Task, design: Design) -> tuple[TargetResult, ...]:
-    """Return what becomes of each target of a task in one shape."""
+def target_results(
+    task: Task, design: Design, chosen: NDArray[np.intp] | None = None
+) -> tuple[TargetResult, ...]:
+    """Return what becomes of each target of a task in one shape, or of those chosen by their indices."""
     check = design.verification
-    joints = joints_reaching(task, design)
+    chosen = np.arange(len(task.targets)) if chosen is None else chosen
+    joints = joints_reaching(task, design, chosen)
     return tuple(
         TargetResult(
-            name=target.name,
-            position=target.position,
-            tolerance=target.tolerance,
+            name=task.table.names[index],
+            position=task.table.positions[index],
+            tolerance=float(task.tolerances[index]),
             reached=frozen(check.reached[index]),
             miss=float(check.misses[index]),
             within_tolerance=check.within_tolerance[index],
             clearance=float(check.clearances[index]),
-            joints=frozen(joints[index][0]),
-            alternatives=frozen(joints[index][1:]),
+            joints=frozen(joints[row][0]),
+            alternatives=frozen(joints[row][1:]),
         )
-        for index, target in enumerate(task.targets)
+        for row, index in enumerate(chosen.tolist())
     )
+
+
+def worst_targets(task: Task, design: Design, most: int) -> NDArray[np.intp]:
+    """Return the indices of the targets that are missed most in a shape, by their tolerances, worst first.
+
+    Args:
+        task: The task.
+        design: The shape.
+        most: How many at most.
+    """
+    return np.argsort(-design.verification.misses / task.tolerances, kind="stable")[:most]

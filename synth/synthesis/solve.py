@@ -53,11 +53,17 @@ def solve(
 
     Raises:
         InputError: An argument is wrong, or the sizes of the task cannot be meant; with every mistake.
+        TimeLimitError: The time was up before the file of the task was read.
     """
-    task = checked_task(
-        task, seed=seed, warm_start=warm_start, alternatives=alternatives, time_limit=time_limit
-    )
     watch = Watch(time_limit, stop=stop, report=progress)
+    task = checked_task(
+        task,
+        seed=seed,
+        warm_start=warm_start,
+        alternatives=alternatives,
+        time_limit=time_limit,
+        is_up=watch.is_up,
+    )
     search = Search(task, part_of(task, seed), seed, watch, alternatives)
     near = warm_start.designs if warm_start is not None and warm_start.task.robot == task.robot else ()
     with search.kept(), watch.keeping_back(search.kept_back):

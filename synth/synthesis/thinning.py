@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 
+_LOOKED_AT = 200_000
+
+
 def thinned(task: Task, count: int, rng: np.random.Generator) -> Task:
     """Return a task with a part of its targets, or the task itself if they are few.
 
@@ -27,6 +30,9 @@ def thinned(task: Task, count: int, rng: np.random.Generator) -> Task:
     """
     if count >= len(task.targets):
         return task
+    if len(task.targets) > _LOOKED_AT:  # of a million, as many as tell where their ends are
+        some = np.sort(rng.choice(len(task.targets), _LOOKED_AT, replace=False))
+        task = replace(task, targets=task.table.take(some))
     spread = _spread(task.positions, count // 2, int(rng.integers(len(task.targets))))
     others = np.setdiff1d(np.arange(len(task.targets)), spread)
     chosen = np.union1d(spread, rng.choice(others, count - len(spread), replace=False))

@@ -84,9 +84,14 @@ class Watch:
         self.raised: BaseException | None = None
 
     @property
+    def elapsed(self) -> float:
+        """The time since it was made, s."""
+        return self._clock() - self._began
+
+    @property
     def remaining(self) -> float:
         """The time left, s; infinite without a limit, never below 0."""
-        return max(self._time_limit - (self._clock() - self._began), 0.0)
+        return max(self._time_limit - self.elapsed, 0.0)
 
     @property
     def interrupted(self) -> bool:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from enum import Enum
 from typing import Any
 
 import numpy as np
 
-from synth.errors import InputError, Mistake
+from synth.errors import InputError, Mistake, TimeLimitError
 
 KeyPath = tuple[str | int, ...]
 
@@ -49,11 +49,16 @@ class Document:
     Attributes:
         value: Mappings, lists, texts, numbers, booleans and None; `REFUSED` where there was a mistake.
         file: Name of the file, or None.
+
+    Args:
+        file: Name of the file.
+        is_up: Asked now and then whether the time for reading is up.
     """
 
-    def __init__(self, file: str | None = None) -> None:
+    def __init__(self, file: str | None = None, is_up: Callable[[], bool] = lambda: False) -> None:
         self.value: Any = REFUSED
         self.file = file
+        self._is_up = is_up
         self._places: dict[KeyPath, tuple[int, int]] = {}  # line (0: none) and rank in the input
         self._found: list[tuple[tuple[int, int], Mistake]] = []
 
@@ -63,6 +68,18 @@ class Document:
         document = cls()
         document.value = document._plain(mapping, ())
         return document
+
+    def see_the_time(self) -> None:
+        """Go on if there is time.
+
+        Raises:
+            TimeLimitError: There is none.
+        """
+        if self._is_up():
+            raise TimeLimitError(
+                "the time limit was over before the task was read: nothing was searched for; thousands of "
+                "points are read fastest from a table, surface: {points: file.csv}"
+            )
 
     def place(self, path: KeyPath, line: int = 0) -> None:
         """Note where a key stands; keys come in the order of the input."""

@@ -11,6 +11,7 @@ from synth.errors import InputError, Mistake
 from synth.task.schema import LARGEST
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from synth.arrays import FloatArray
@@ -22,11 +23,12 @@ _NUMBER = re.compile(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?")
 _QUOTED_AT_MOST = 20  # characters of a cell
 
 
-def read_points(path: Path) -> FloatArray:
+def read_points(path: Path, see_the_time: Callable[[], None] = lambda: None) -> FloatArray:
     """Read the points of a CSV file, one a line: x, y and z, under a header of these names or none.
 
     Args:
         path: The file; empty lines are passed over.
+        see_the_time: Called before each step that takes long; what it raises passes through.
 
     Returns:
         The points as they stand, shape (n, 3), in the unit of the file.
@@ -47,9 +49,11 @@ def read_points(path: Path) -> FloatArray:
         raise InputError([Mistake(f"cannot be read: {reason}", str(path))]) from None
     if len(content) > _MAX_BYTES:
         raise InputError([Mistake(f"is larger than {_MAX_BYTES // 1_000_000} MB", str(path))])
+    see_the_time()
     first = next((number for number, line in enumerate(lines) if line.strip()), None)
     start = first + 1 if first is not None and _is_header(lines[first]) else 0
     rows = [line for line in lines[start:] if line.strip()]
+    see_the_time()
     try:
         # The fast way; whatever is wrong is looked for line by line, by the same notion of a number.
         points = np.loadtxt(rows, delimiter=",", ndmin=2, comments=None) if rows else None

@@ -23,7 +23,7 @@ from synth.task.wording import validate
 from synth.task.yaml_text import read_file, read_text
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from synth.arrays import FloatArray
     from synth.robot import Robot
@@ -31,11 +31,12 @@ if TYPE_CHECKING:
 _ROBOT_FILES = {".yaml", ".yml", ".json"}
 
 
-def load_task(path: str | os.PathLike[str]) -> Task:
+def load_task(path: str | os.PathLike[str], *, is_up: Callable[[], bool] = lambda: False) -> Task:
     """Read a task file.
 
     Args:
         path: The file; a robot file that it names is looked for beside it.
+        is_up: Asked now and then whether the time for reading is up.
 
     Returns:
         The task in metres and radians; its name is that of the file if it states none.
@@ -43,9 +44,10 @@ def load_task(path: str | os.PathLike[str]) -> Task:
     Raises:
         InputError: The file, or the robot file it names, cannot be read or is wrong; with every
             mistake, in the order of the file.
+        TimeLimitError: The time for reading was up.
     """
     path = as_path(path)
-    return _task(read_file(path), directory=path.parent, name=path.stem)
+    return _task(read_file(path, is_up), directory=path.parent, name=path.stem)
 
 
 def parse_task(
@@ -69,8 +71,12 @@ def parse_task(
     return _task(document, directory=Path(directory), name=name)
 
 
-def as_task(source: object) -> Task:
+def as_task(source: object, *, is_up: Callable[[], bool] = lambda: False) -> Task:
     """Return a task from whatever stands for one: itself, the path of its file, or a mapping as in a file.
+
+    Args:
+        source: What stands for it.
+        is_up: Asked now and then whether the time for reading a file is up.
 
     Raises:
         InputError: The source is none of these, its file or mapping is wrong, or its sizes cannot be meant.
@@ -79,7 +85,7 @@ def as_task(source: object) -> Task:
         refuse_if_any(unmeant_sizes(source))
         return source
     if isinstance(source, str | os.PathLike):
-        return load_task(source)
+        return load_task(source, is_up=is_up)
     if isinstance(source, Mapping):
         return parse_task(source)
     wanted = "must be a Task, the path of a task file, or a mapping"
@@ -142,7 +148,9 @@ def _task(document: Document, directory: Path, name: str) -> Task:
     for key, kind in (("targets", "target"), ("obstacles", "obstacle")):
         _report_names_given_twice(document, key, kind, content.get(key))
     scan = _scan(document, content["surface"], directory) if "surface" in content else None
+    document.see_the_time()
     file = validate(document, SurfaceTaskFile if "surface" in content else TaskFile)
+    document.see_the_time()
     if file is None or document.is_wrong:
         raise document.error()
     if isinstance(file.robot, RobotEntry):
@@ -175,7 +183,7 @@ def _scan(document: Document, surface: object, directory: Path) -> FloatArray | 
     file = entry.get("points")
     if isinstance(file, str) and file:
         try:
-            return read_points(directory / file)
+            return read_points(directory / file, document.see_the_time)
         except InputError as error:
             _adopt(document, ("surface", "points"), error)
     return None

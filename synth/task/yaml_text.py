@@ -26,11 +26,12 @@ from synth.errors import InputError, Mistake
 from synth.task.document import MAX_DEPTH, REFUSED, Document, KeyPath
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
 MAX_BYTES = 2_000_000  # some 25 000 targets, read in seconds
 
+_ASKED_AFTER = 100  # items of a list, how late it is: they take some 50 ms
 # Plain scalars of the YAML 1.2 core schema: no sexagesimals, `yes` is a text, `1e-3` a number.
 _VALUES: dict[str, bool | None] = {"null": None, "true": True, "false": False}
 _WORDS = {form: value for word, value in _VALUES.items() for form in (word, word.title(), word.upper())}
@@ -40,8 +41,12 @@ _PAIR = re.compile("[\ud800-\udbff][\udc00-\udfff]")
 _NOT_FINITE = re.compile(r"[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)")
 
 
-def read_file(path: Path) -> Document:
+def read_file(path: Path, is_up: Callable[[], bool] = lambda: False) -> Document:
     """Read a YAML file.
+
+    Args:
+        path: The file.
+        is_up: Asked now and then whether the time for reading is up.
 
     Raises:
         InputError: There is no such file, it cannot be read, is too large, or is no YAML document.
@@ -63,16 +68,21 @@ def read_file(path: Path) -> Document:
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         raise _refusal(path, "is not a text file in UTF-8", line) from None
-    return read_text(text, str(path))
+    return read_text(text, str(path), is_up)
 
 
-def read_text(text: str, file: str | None = None) -> Document:
+def read_text(text: str, file: str | None = None, is_up: Callable[[], bool] = lambda: False) -> Document:
     """Read a YAML text.
+
+    Args:
+        text: The text.
+        file: Name of its file, for mistakes.
+        is_up: Asked now and then whether the time for reading is up.
 
     Raises:
         InputError: The text is no YAML document. Milder mistakes wait in the document.
     """
-    document = Document(file)
+    document = Document(file, is_up)
     reader = _Reader(text, document)
     try:
         document.value = reader.document()
@@ -174,6 +184,8 @@ class _Reader:
         items: list[object] = []
         while not isinstance(event := next(self._events), CollectionEndEvent):
             items.append(self._value(event, (*path, len(items))))
+            if len(items) % _ASKED_AFTER == 0:
+                self._document.see_the_time()
         return items
 
     def _mapping(self, path: KeyPath) -> dict[str, object]:
