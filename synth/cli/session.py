@@ -65,7 +65,7 @@ class Session:
         """Return the time left for a search, s: what is found is then still to be drawn and written.
 
         Args:
-            count: How many targets there are, all of which are written.
+            count: How many targets are written.
         """
         return max(self.remaining - _WRITING - count * _WRITING_ONE, 0.5 * self.remaining)
 

@@ -51,6 +51,7 @@ def solve_file(
     from synth.task import load_task
 
     task = load_task(file, is_up=session.is_up)
+    written = len(task.targets) if output is not None or form == "json" else 0
     if output is not None:
         prepare_directory(output, SOLUTION_FILES)
     from synth.synthesis import Status, explain, showing, solve
@@ -60,7 +61,7 @@ def solve_file(
             task,
             seed=seed,
             prove=prove,
-            time_limit=session.for_search(len(task.targets)),
+            time_limit=session.for_search(written),
             stop=session.stop,
             progress=progress,
         )
@@ -70,7 +71,7 @@ def solve_file(
                 "looking for what would release the task",
                 lambda: explain(
                     found,
-                    time_limit=session.for_search(len(found.task.targets)),
+                    time_limit=session.for_search(written),
                     stop=session.stop,
                     progress=progress,
                 ),

@@ -104,13 +104,16 @@ def improved(task: Task, arm: Arm, watch: Watch) -> Arm:
         watch: When it is up, no more steps are taken.
     """
     squares = replace(task, objective=Objective.LEAST_SQUARES)
+    step = 0.0  # s, for each target
     for count, steps in ((_SAMPLE, _STEPS), (len(task.targets), _STEPS_WITH_ALL)):
-        if watch.is_up():
+        # Looking at all targets afterwards takes about as long as a step.
+        if watch.is_up() or watch.remaining < (steps + 2) * step * count:
             break
         watch.tell(phase="improving for all targets")
-        some = random_part(squares, count, 0)
-        refined = refine(some, Population.of(arm), iterations=steps)
+        some, began = random_part(squares, count, 0), watch.elapsed
+        refined = refine(some, Population.of(arm), iterations=steps, is_up=watch.is_up)
         arm = refined.population.arm(0, task.base)
+        step = (watch.elapsed - began) / (steps * count)
     return arm
 
 
@@ -168,16 +171,22 @@ def levelled(task: Task, arm: Arm, watch: Watch) -> Arm:
         arm: The robot in a shape near the best, of equal arcs.
         watch: When it is up, no more steps are taken.
     """
+    began = watch.elapsed
+    _relative_misses(random_part(task, _SAMPLE, 0), arm)
+    look = (watch.elapsed - began) * len(task.targets) / _SAMPLE  # s, at all targets, with room
+    if watch.remaining < 3.0 * look:
+        return arm
     least = _relative_misses(task, arm)
     for _ in range(_LEVELLINGS):
-        if watch.is_up():
+        # Each time, and for their verification, all targets are looked at.
+        if watch.is_up() or watch.remaining < 3.0 * look:
             break
         watch.tell(phase="levelling the misses")
         worst = task.table.take(np.sort(np.argsort(-least, kind="stable")[:_SAMPLE]))
         joints, _misses = arm.closest_joints(worst.positions)
         some = replace(task, targets=worst, objective=Objective.MINIMAX)
         start = Refined(Population.of(arm), joints[None], np.zeros(1))
-        lower = level(some, start).population.arm(0, task.base)
+        lower = level(some, start, watch.is_up).population.arm(0, task.base)
         misses = _relative_misses(task, lower)
         if misses.max() >= least.max():
             break

@@ -17,6 +17,7 @@ from synth.synthesis.population import Population, free_directions, into_limits
 from synth.synthesis.postures import Aims, Postures
 from synth.synthesis.residuals import Residuals
 from synth.synthesis.separation import overlaps
+from synth.synthesis.watch import never
 from synth.task import Objective
 
 if TYPE_CHECKING:
@@ -90,6 +91,7 @@ def refine(
     iterations: int | None = None,
     *,
     near: bool = False,
+    is_up: Callable[[], bool] = never,
 ) -> Refined:
     """Improve shapes by damped Gauss-Newton steps, their limits and those of the joints observed.
 
@@ -103,6 +105,7 @@ def refine(
             that branch; by default the nearest one, which is looked for again from time to time.
         iterations: Number of steps; by default enough to arrive, mostly.
         near: Whether the starts were refined before: the norm whose valleys are the widest is left out.
+        is_up: Asked after each step whether to end with what there is.
 
     Returns:
         The improved shapes.
@@ -113,6 +116,7 @@ def refine(
         population,
         theta2,
         lambda descent: descent.after(iterations, keep_branches=theta2 is not None, near=near),
+        is_up,
     )
 
 
@@ -121,6 +125,7 @@ def _descents(
     population: Population,
     theta2: FloatArray | None,
     led: Callable[[_Descent], Refined],
+    is_up: Callable[[], bool],
     *,
     clear: bool = False,
 ) -> Refined:
@@ -135,11 +140,11 @@ def _descents(
             postures = Postures.nearest(aims, part.kinematics)
         else:
             postures = Postures.at(aims, part.kinematics, theta2[some])
-        parts.append(led(_Descent(task, aims, part, postures, clear=clear)))
+        parts.append(led(_Descent(task, aims, part, postures, is_up, clear=clear)))
     return Refined.joined(parts)
 
 
-def level(task: Task, refined: Refined) -> Refined:
+def level(task: Task, refined: Refined, is_up: Callable[[], bool] = never) -> Refined:
     """Lower the worst miss of shapes for which it is nearly the least already.
 
     The exponent of the norm is raised step by step: each norm's least is close to that of the one before, so
@@ -148,27 +153,29 @@ def level(task: Task, refined: Refined) -> Refined:
     Args:
         task: The task, for the worst miss.
         refined: Shapes, each with the branches of joint 2 on which it stays.
+        is_up: Asked after each step whether to end with what there is.
 
     Returns:
         The best of the shapes, with lower ones; their costs are nearly the worst misses squared, m^2.
     """
     for exponents in _LEVELLING:
         led = partial(_Descent.level, exponents=exponents)
-        refined = _descents(task, refined.population, refined.joints[..., 1], led).best(_LEVELLED)
+        refined = _descents(task, refined.population, refined.joints[..., 1], led, is_up).best(_LEVELLED)
     return refined
 
 
-def cleared(task: Task, refined: Refined) -> Refined:
+def cleared(task: Task, refined: Refined, is_up: Callable[[], bool] = never) -> Refined:
     """Move shapes out of obstacles and out of themselves, as their targets allow.
 
     Args:
         task: The task.
         refined: Shapes, each with the branches of joint 2 on which it stays.
+        is_up: Asked after each step whether to end with what there is.
 
     Returns:
         The shapes; their costs count the misses alone.
     """
-    return _descents(task, refined.population, refined.joints[..., 1], _Descent.cleared, clear=True)
+    return _descents(task, refined.population, refined.joints[..., 1], _Descent.cleared, is_up, clear=True)
 
 
 def relative_weights(task: Task) -> FloatArray:
@@ -181,8 +188,16 @@ class _Descent:
     """Shapes on their way down, each with its postures."""
 
     def __init__(
-        self, task: Task, aims: Aims, population: Population, postures: Postures, *, clear: bool
+        self,
+        task: Task,
+        aims: Aims,
+        population: Population,
+        postures: Postures,
+        is_up: Callable[[], bool],
+        *,
+        clear: bool,
     ) -> None:
+        self._is_up = is_up
         self._task, self._aims, self._weights, self._clear = task, aims, relative_weights(task), clear
         self._population, self._postures = population, postures
         self._damping = np.full(len(population.length), _FIRST_DAMPING)
@@ -194,7 +209,7 @@ class _Descent:
         for iteration in range(iterations):
             self._measure_by(self._exponent_at(iteration / iterations, near=near))
             self._step()
-            if np.count_nonzero(self._cost < _EXACT) >= _ENOUGH:
+            if np.count_nonzero(self._cost < _EXACT) >= _ENOUGH or self._is_up():
                 break
             last = iteration == iterations - 1
             if not (keep_branches or last) and (iteration + 1) % _STEPS_ON_BRANCHES == 0:
@@ -217,6 +232,8 @@ class _Descent:
             self._measure_by(exponent)
             self._damping = np.full_like(self._damping, _LEVELLING_DAMPING)
             for _ in range(_LEVELLING_STEPS):
+                if self._is_up():
+                    break
                 self._step()
         return Refined(self._population, self._postures.joints, self._cost)
 
@@ -252,7 +269,8 @@ class _Descent:
         off = category_offsets(self._task, population)
         cost = self._shares(postures)[0] + np.einsum("ni,ni->n", off, off)
         if self._clear:
-            cost += np.mean(overlaps(self._task, population, postures.joints, margin=_MARGIN) ** 2, axis=-1)
+            depth = overlaps(self._task, population, postures.joints, margin=_MARGIN, is_up=self._is_up)
+            cost += np.mean(depth**2, axis=-1)
         return np.asarray(cost)
 
     def _step(self) -> None:
@@ -281,6 +299,8 @@ class _Descent:
         theta2 = self._postures.theta2 + residuals.following((motion @ step[..., None])[..., 0])
         postures = Postures.at(self._aims, moved.kinematics, np.clip(theta2, second.lower, second.upper))
         cost = self._cost_of(moved, postures)
+        if self._clear and self._is_up():
+            return  # not all obstacles were looked at
         better = cost < self._cost
         self._population = moved.where(better, self._population)
         self._postures = postures.where(better[:, None], self._postures)
@@ -292,19 +312,21 @@ class _Descent:
     def _depths(self, residuals: Residuals) -> tuple[FloatArray, FloatArray]:
         """Return the depths in obstacles, shape (N, n), m, and by differences how unknowns change them."""
         here, motion, second = self._population, self._population.motion, self._aims.limits.second
-        depth = overlaps(self._task, here, self._postures.joints, margin=_MARGIN)
+        depth = overlaps(self._task, here, self._postures.joints, margin=_MARGIN, is_up=self._is_up)
         deeper = np.zeros((*depth.shape, here.unknowns.shape[1]))
         if not depth.any():
             return depth, deeper
         deep = np.flatnonzero(depth.any(axis=1))
         for unknown in range(deeper.shape[2]):
+            if self._is_up():
+                break
             moved = here.unknowns[deep]
             moved[:, unknown] += _DIFFERENCE
             population = Population(here.robot, moved)
             theta2 = self._postures.theta2 + residuals.following(_DIFFERENCE * motion[..., unknown])
             theta2 = np.clip(theta2[deep], second.lower, second.upper)
             joints = Postures.at(self._aims, population.kinematics, theta2).joints
-            changed = overlaps(self._task, population, joints, margin=_MARGIN)
+            changed = overlaps(self._task, population, joints, margin=_MARGIN, is_up=self._is_up)
             deeper[deep, :, unknown] = (changed - depth[deep]) / _DIFFERENCE
         return depth, deeper
 

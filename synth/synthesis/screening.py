@@ -117,10 +117,10 @@ def _starts(task: Task, seed: int, rng: np.random.Generator, watch: Watch, *, qu
     first = np.union1d(order[: _REFINED // 2], drawn(_REFINED // 2, _GOOD))
     if designs := exact_designs(task):
         first = np.union1d(first, nearest_to_designs(shapes, designs, _PER_DESIGN))
-    valleys, distinct = Valleys.of(task, shapes.take(first)), _Distinct(task)
+    valleys, distinct = Valleys.of(task, shapes.take(first), watch), _Distinct(task)
     if not (quick or valleys.agreed):
         yield from distinct.of(valleys.within_tolerance)
-        valleys = valleys.explored(lambda: shapes.take(drawn(_REFINED, _FRESH)), rng, watch)
+        valleys = valleys.explored(lambda: shapes.take(drawn(_REFINED, _FRESH)), rng)
     yield from distinct.of(valleys.promising)
 
 

@@ -42,7 +42,8 @@ _ALTERNATIVES_THAT_MISS = 2  # likewise, at most, where no shape meets all targe
 _GAIN = 1e-3  # of the objective: the least that is worth another start
 _PROOF_TIME = 60.0  # s
 _PROVEN_IN_TIME = 50_000  # targets: whether each of more is within reach takes a second or longer
-_KEPT_BACK = 0.5  # of the time: where the search looks at a part of the targets, to look at all of them
+# So many targets are looked at in the time of the search for a part of them; of all the time it is left some.
+_AS_LONG, _LEAST_SEARCH = 30_000, 0.2
 
 
 @dataclass
@@ -86,7 +87,8 @@ class Search:
     @property
     def kept_back(self) -> float:
         """Which share of the time the search leaves for looking at all targets."""
-        return 0.0 if self.part is self.task else _KEPT_BACK
+        count = len(self.task.targets)
+        return 0.0 if self.part is self.task else min(count / (count + _AS_LONG), 1.0 - _LEAST_SEARCH)
 
     def follow(self, designs: Sequence[Design]) -> bool:
         """Polish the best shapes for a task nearby; whether one of them reaches every target."""

@@ -20,9 +20,10 @@ import numpy as np
 
 from synth.arrays import FloatArray, frozen
 from synth.robot import ArmBody, turned
+from synth.synthesis.watch import never
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from synth.geometry import Solid
     from synth.robot import Arm
@@ -79,7 +80,14 @@ def separations(task: Task, arm: Arm, joints: FloatArray, *, itself: bool) -> tu
     return tuple(planes + list(_from_itself(arm, joints)) if itself else planes)
 
 
-def overlaps(task: Task, population: Population, joints: FloatArray, *, margin: float = 0.0) -> FloatArray:
+def overlaps(
+    task: Task,
+    population: Population,
+    joints: FloatArray,
+    *,
+    margin: float = 0.0,
+    is_up: Callable[[], bool] = never,
+) -> FloatArray:
     """Return how deep shapes are inside obstacles and inside themselves, at samples of tube and rod.
 
     Args:
@@ -87,6 +95,7 @@ def overlaps(task: Task, population: Population, joints: FloatArray, *, margin: 
         population: The shapes, of shape (N,).
         joints: Joint angles for each target, shape (N, n, 2), rad.
         margin: What they are to keep from each other, m.
+        is_up: Asked after each obstacle whether to leave out the others.
 
     Returns:
         The largest depth of each shape at each target, shape (N, n), m; 0 where it is clear.
@@ -103,7 +112,17 @@ def overlaps(task: Task, population: Population, joints: FloatArray, *, margin: 
     tube = np.concatenate([tube, 0.5 * (tube[:, 1:] + tube[:, :-1])], axis=1)
     tube = turned(np.broadcast_to(tube[:, None], (*depth.shape, *tube.shape[1:])), theta1)
     ends = turned(np.stack(np.broadcast_arrays(end, end + rod), axis=-2), theta1)
-    for solid in task.solids:
+    # What no link reaches is in the way of none.
+    reach = (
+        float(population.length.max(initial=0.0))
+        + float(np.linalg.norm(rod, axis=-1).max(initial=0.0))
+        + max(radii)
+        + margin
+    )
+    near = [solid for solid in task.solids if solid.distance(np.array([0.0, 0.0, robot.d12])) < reach]
+    for solid in near:
+        if is_up():
+            break
         depth = np.maximum(depth, radii[0] + margin - solid.distance(tube).min(axis=-1))
         depth = np.maximum(depth, radii[1] + margin - _least_along(solid, ends[..., 0, :], ends[..., 1, :]))
     return depth

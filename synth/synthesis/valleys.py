@@ -22,6 +22,7 @@ import numpy as np
 from synth.synthesis.population import ARCS, Population, into_limits
 from synth.synthesis.refinement import Refined, cleared, level, refine
 from synth.synthesis.separation import overlaps
+from synth.synthesis.watch import Watch
 from synth.task import Objective
 
 if TYPE_CHECKING:
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
-    from synth.synthesis.watch import Watch
     from synth.task import Task
 
 # Rounds of the three steps; shapes kept; of these the parents, which miss differently; those of half of the
@@ -63,21 +63,24 @@ class Valleys:
 
     Attributes:
         task: The task.
+        watch: When it is up every step ends with what there is.
         best: The best shapes.
         fresh: Where the best of the shapes ended that know nothing of each other: mean squared misses, m^2.
         drawn: How many of these there were.
     """
 
     task: Task
+    watch: Watch
     best: Refined
     fresh: FloatArray
     drawn: int
 
     @classmethod
-    def of(cls, task: Task, fresh: Population) -> Valleys:
-        """Return what fresh shapes tell."""
-        best = _weighed(task, refine(task, fresh))
-        return cls(task, best, best.cost, len(best.cost))
+    def of(cls, task: Task, fresh: Population, watch: Watch | None = None) -> Valleys:
+        """Return what fresh shapes tell; when the watch is up, as far as they are."""
+        watch = watch or Watch()
+        best = _weighed(task, refine(task, fresh, is_up=watch.is_up), watch)
+        return cls(task, watch, best, best.cost, len(best.cost))
 
     @property
     def promising(self) -> Refined:
@@ -86,7 +89,7 @@ class Valleys:
         if self.task.objective is Objective.LEAST_SQUARES:
             return best
         some = best.take(_some_of_each_kind(best, 1)[:_LEVELLED])
-        return _weighed(self.task, level(self.task, some))
+        return _weighed(self.task, level(self.task, some, self.watch.is_up), self.watch)
 
     @property
     def within_tolerance(self) -> Refined:
@@ -96,11 +99,12 @@ class Valleys:
         return promising.take(np.flatnonzero(near))
 
     def _out_of_obstacles(self) -> Refined:
-        best = self.best.best(_CLEARED)
-        deep = np.flatnonzero(overlaps(self.task, best.population, best.joints).any(axis=1))
-        if not len(deep):
+        best, is_up = self.best.best(_CLEARED), self.watch.is_up
+        deep = np.flatnonzero(overlaps(self.task, best.population, best.joints, is_up=is_up).any(axis=1))
+        if not len(deep) or is_up():
             return self.best
-        return Refined.joined([self.best, _weighed(self.task, cleared(self.task, best.take(deep)))])
+        moved = _weighed(self.task, cleared(self.task, best.take(deep), is_up), self.watch)
+        return self.best if is_up() else Refined.joined([self.best, moved])
 
     @property
     def agreed(self) -> bool:
@@ -112,21 +116,20 @@ class Valleys:
         agreeing = np.count_nonzero(self.fresh <= (1.0 + _SAME) * least)
         return bool(least > _SHEETS and agreeing >= max(_AGREEING * self.drawn, _ENOUGH))
 
-    def explored(self, draw: Callable[[], Population], rng: np.random.Generator, watch: Watch) -> Valleys:
+    def explored(self, draw: Callable[[], Population], rng: np.random.Generator) -> Valleys:
         """Return what is known after a search for better valleys.
 
         Args:
             draw: Draws fresh shapes.
             rng: Source of randomness.
-            watch: Told of each step; when it is up, the search ends.
         """
         now = replace(self, best=self.best.best(_KEPT))
         for _ in range(_ROUNDS):
             for step in (_bent, _swapped):
-                if now.agreed or watch.is_up():
+                if now.agreed or self.watch.is_up():
                     return now
-                watch.tell(phase="looking among valleys")
-                children = step(self.task, now.best.take(_parents(now.best)), rng)
+                self.watch.tell(phase="looking among valleys")
+                children = step(self.task, now.best.take(_parents(now.best)), rng, self.watch)
                 now = now.with_better(children)
             now = now.with_fresh(draw())
         return now
@@ -134,8 +137,11 @@ class Valleys:
     def with_fresh(self, shapes: Population) -> Valleys:
         """Return what is known with some more fresh shapes, the worst of which are given up half-way."""
         first, last = _FRESH
-        refined = refine(self.task, shapes, iterations=first).best(len(shapes.length) // _GO_ON)
-        refined = _weighed(self.task, refine(self.task, refined.population, iterations=last, near=True))
+        is_up = self.watch.is_up
+        refined = refine(self.task, shapes, iterations=first, is_up=is_up)
+        refined = refined.best(len(shapes.length) // _GO_ON)
+        refined = refine(self.task, refined.population, iterations=last, near=True, is_up=is_up)
+        refined = _weighed(self.task, refined, self.watch)
         fresh = np.concatenate([self.fresh, refined.cost])
         return replace(
             self,
@@ -156,24 +162,26 @@ class Valleys:
         return replace(self, best=both.best(_KEPT))
 
 
-def _bent(task: Task, parents: Refined, rng: np.random.Generator) -> Refined:
+def _bent(task: Task, parents: Refined, rng: np.random.Generator, watch: Watch) -> Refined:
     """Return shapes after bending them at random by a little or more."""
     unknowns = parents.population.unknowns
     size = rng.choice(_SIZES, (len(unknowns), 1)) * np.ones(unknowns.shape)
     size[:, 2 * ARCS :] *= _LENGTHS
     changed = into_limits(task.robot, unknowns + size * rng.normal(size=unknowns.shape))
-    return _weighed(task, refine(task, Population(task.robot, changed), iterations=_BENT, near=True))
+    bent = Population(task.robot, changed)
+    return _weighed(task, refine(task, bent, iterations=_BENT, near=True, is_up=watch.is_up), watch)
 
 
-def _swapped(task: Task, parents: Refined, rng: np.random.Generator) -> Refined:
+def _swapped(task: Task, parents: Refined, rng: np.random.Generator, watch: Watch) -> Refined:
     """Return shapes after giving one or two targets of each another angle of joint 2."""
     limits, theta2 = task.robot.joint_limits.second, parents.joints[..., 1]
     swapped = rng.integers(1, _MOST_SWAPPED + 1, (len(theta2), 1))
     chosen = np.argsort(rng.uniform(size=theta2.shape), axis=1) < swapped
     angles = np.where(chosen, rng.uniform(limits.lower, limits.upper, theta2.shape), theta2)
     first, last = _SWAPPED
-    led = refine(task, parents.population, angles, iterations=first)
-    return _weighed(task, refine(task, led.population, iterations=last, near=True))
+    led = refine(task, parents.population, angles, iterations=first, is_up=watch.is_up)
+    led = refine(task, led.population, iterations=last, near=True, is_up=watch.is_up)
+    return _weighed(task, led, watch)
 
 
 def _parents(refined: Refined) -> NDArray[np.intp]:
@@ -193,7 +201,7 @@ def _some_of_each_kind(refined: Refined, count: int) -> NDArray[np.intp]:
     return np.asarray(order[np.arange(len(order)) - first[kind] < count])
 
 
-def _weighed(task: Task, refined: Refined) -> Refined:
+def _weighed(task: Task, refined: Refined, watch: Watch) -> Refined:
     """Return shapes whose costs say, too, how deep they are inside obstacles or themselves, m^2."""
-    depth = overlaps(task, refined.population, refined.joints)
+    depth = overlaps(task, refined.population, refined.joints, is_up=watch.is_up)
     return replace(refined, cost=refined.cost + np.mean(depth**2, axis=-1))

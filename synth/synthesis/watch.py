@@ -54,6 +54,11 @@ class Timing:
     proving: float = 0.0
 
 
+def never() -> bool:
+    """Return that the time is not up: where there is no limit."""
+    return False
+
+
 class Watch:
     """Handed to everything that takes long: it asks `is_up` many times a second, and tells how far it is.
 

@@ -105,8 +105,8 @@ def _searched(
         pool = pool.joined(_bred(task, calmer, (), _LED_CALMER, rng, stop))
     if float(task.tolerances.min()) < _TIGHT and len(pool.table):
         chosen = pool.population.take(pool.distinct()[:_BENT])
-        led = refine(narrow, chosen, iterations=_ITERATIONS_AGAIN)
-        pool = _Pool.of(task, narrow, led.population, _EXACTLY)
+        led = refine(narrow, chosen, iterations=_ITERATIONS_AGAIN, is_up=stop)
+        pool = _Pool.of(task, narrow, led.population, stop, _EXACTLY)
     return pool
 
 
@@ -135,8 +135,8 @@ def _bred(
         varied = _varied(narrow.robot, [Population.of(arm) for arm in known], _FROM_KNOWN, rng)
         beginnings = np.concatenate([beginnings, varied])
     iterations = _ITERATIONS if known else _ITERATIONS_CALMER
-    refined = refine(narrow, Population(narrow.robot, beginnings), iterations=iterations)
-    pool = _Pool.of(task, narrow, refined.population)
+    refined = refine(narrow, Population(narrow.robot, beginnings), iterations=iterations, is_up=stop)
+    pool = _Pool.of(task, narrow, refined.population, stop)
     # Where targets are met exactly and fix finitely many surfaces, bending changes nothing that counts more
     # than the bend itself.
     finite = float(task.tolerances.min()) < _TIGHT and exact_designs(narrow) is not None
@@ -147,9 +147,10 @@ def _bred(
         gained.append(pool.table[0, :_COUNTS])
         if len(gained) > _PATIENCE and (gained[-1] > gained[-1 - _PATIENCE] - 0.2 * STEPS[:_COUNTS]).all():
             break
-        bent = _varied(narrow.robot, [pool.population.take(pool.distinct()[:_BENT])], _VARIED, rng)
-        refined = refine(_beside(narrow, rng), Population(narrow.robot, bent), iterations=_ITERATIONS_AGAIN)
-        pool = pool.joined(_Pool.of(task, narrow, refined.population))
+        unknowns = _varied(narrow.robot, [pool.population.take(pool.distinct()[:_BENT])], _VARIED, rng)
+        bent = Population(narrow.robot, unknowns)
+        refined = refine(_beside(narrow, rng), bent, iterations=_ITERATIONS_AGAIN, is_up=stop)
+        pool = pool.joined(_Pool.of(task, narrow, refined.population, stop))
     return pool
 
 
@@ -203,13 +204,21 @@ class _Pool:
     table: FloatArray
 
     @classmethod
-    def of(cls, task: Task, narrow: Task, population: Population, part: float = _PART_OF_TOLERANCE) -> _Pool:
+    def of(
+        cls,
+        task: Task,
+        narrow: Task,
+        population: Population,
+        stop: Callable[[], bool],
+        part: float = _PART_OF_TOLERANCE,
+    ) -> _Pool:
         """Return those of some shapes that meet a task, as far as samples tell.
 
         Args:
             task: The task.
             narrow: The same with limits drawn in.
             population: The shapes.
+            stop: When it says yes the obstacles are left out: nobody asks for these shapes any more.
             part: Of each tolerance, that a miss may take.
         """
         aims = Aims(task.positions, narrow.robot.joint_limits)
@@ -218,7 +227,7 @@ class _Pool:
         joints = postures.joints
         within &= _over_floor(task, population, joints)
         population, joints = population.take(within), joints[within]
-        depth = overlaps(narrow, population, joints).max(axis=1, initial=0.0)
+        depth = overlaps(narrow, population, joints, is_up=stop).max(axis=1, initial=0.0)
         clearance = Margins.wanted(task.robot).clearance
         clear = depth <= clearance
         population, joints, depth = population.take(clear), joints[clear], depth[clear]

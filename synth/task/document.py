@@ -69,16 +69,18 @@ class Document:
         document.value = document._plain(mapping, ())
         return document
 
-    def see_the_time(self) -> None:
+    def see_the_time(self, advice: str = "") -> None:
         """Go on if there is time.
+
+        Args:
+            advice: How it would take less.
 
         Raises:
             TimeLimitError: There is none.
         """
         if self._is_up():
             raise TimeLimitError(
-                "the time limit was over before the task was read: nothing was searched for; thousands of "
-                "points are read fastest from a table, surface: {points: file.csv}"
+                f"the time limit was over before the task was read: nothing was searched for{advice}"
             )
 
     def place(self, path: KeyPath, line: int = 0) -> None:

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 MAX_BYTES = 2_000_000  # some 25 000 targets, read in seconds
 
 _ASKED_AFTER = 100  # items of a list, how late it is: they take some 50 ms
+_FASTER = "; thousands of points are read much faster from a table: surface: {points: file.csv}"
 # Plain scalars of the YAML 1.2 core schema: no sexagesimals, `yes` is a text, `1e-3` a number.
 _VALUES: dict[str, bool | None] = {"null": None, "true": True, "false": False}
 _WORDS = {form: value for word, value in _VALUES.items() for form in (word, word.title(), word.upper())}
@@ -185,7 +186,7 @@ class _Reader:
         while not isinstance(event := next(self._events), CollectionEndEvent):
             items.append(self._value(event, (*path, len(items))))
             if len(items) % _ASKED_AFTER == 0:
-                self._document.see_the_time()
+                self._document.see_the_time(_FASTER)
         return items
 
     def _mapping(self, path: KeyPath) -> dict[str, object]:
