@@ -272,11 +272,28 @@ def test_of_a_time_limit_something_is_left_for_writing():
     session = Session(10.0, clock=lambda: now[0])
     now[0] += 3.0
     assert session.remaining == 7.0
-    assert session.for_search == 6.0
+    assert session.for_search(0) == 6.0
+    assert session.for_search(50_000) == pytest.approx(4.5)  # all of them are written
+    assert session.for_search(10**6) == 3.5
     now[0] += 6.0
-    assert session.for_search == 0.5
-    now[0] += 2.0
-    assert session.remaining == session.for_search == 0.0
+    assert session.for_search(0) == 0.5
+    now[0] += 1.1
+    assert session.remaining == session.for_search(0) == 0.0
+    assert not session.is_late()  # a small task may still be looked at
+    now[0] += 0.4
+    assert session.is_late()
+
+
+def test_a_task_that_is_not_read_in_time_is_not_searched_for(tmp_path):
+    (tmp_path / "scan.csv").write_text("500,100,200\n" * 3)
+    surface = "synth: 1\nlength_unit: mm\nrobot: malleable-2dof\nsurface: {points: scan.csv}\n"
+    (tmp_path / "task.yaml").write_text(surface)
+    before = "from synth.cli.session import Session\nSession.is_late = lambda self: True\n"
+    answer = program("solve", tmp_path / "task.yaml", "--time-limit", 5, "-o", tmp_path, before=before)
+    assert answer.returncode == 1
+    assert answer.stdout == ""
+    assert "before the task was read: nothing was searched for" in answer.stderr
+    assert not (tmp_path / "solution.json").exists()
 
 
 def test_signals_are_as_before_after_a_command():

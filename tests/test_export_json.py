@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from synth.export import solution_to_json
+from synth.export import solution_json, solution_to_json
 from synth.geometry import Box, Capsule, Sphere
 from synth.robot import (
     PRESETS,
@@ -298,3 +298,17 @@ def test_a_task_that_is_not_met_has_no_tolerance_to_keep_and_no_ways():
     met = read_back(SOLUTION)["guide"]
     assert 0.0 <= met["forgiveness"]["chance"] <= 1.0
     assert met["forgiveness"]["expected_worst_miss"] > 0.0
+
+
+def test_of_very_many_targets_the_worst_are_told_of_and_the_task_is_whole(monkeypatch):
+    monkeypatch.setattr(solution_json, "MOST_TARGETS", 2)
+    content = read_back(SOLUTION)
+    order = np.argsort(-SOLUTION.best.verification.misses / SOLUTION.task.tolerances, kind="stable")
+    worst = [SOLUTION.task.targets[index].name for index in sorted(order[:2])]
+    assert [target["name"] for target in content["targets"]] == worst
+    assert content["targets_left_out"] == 1
+    assert len(content["task"]["targets"]) == 3
+    assert len(content["alternatives"][0]["targets"]) == 2
+    assert len(read_back(NOTHING)["targets"]) == 2
+    monkeypatch.undo()
+    assert read_back(SOLUTION)["targets_left_out"] == 0

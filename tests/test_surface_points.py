@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from synth.errors import InputError
+from synth.errors import InputError, TimeLimitError
 from synth.task import load_task, parse_task
 
 TASK = """synth: 1
@@ -118,3 +118,25 @@ def test_other_surfaces_are_refused_by_name(kind):
 def test_without_surface_or_targets_the_targets_are_missing():
     with pytest.raises(InputError, match="targets: is missing"):
         parse_task(TASK.replace("surface: {points: scan.csv, tolerance: 5}\n", ""))
+
+
+@pytest.mark.parametrize("answers", [1, 2, 3])
+def test_reading_ends_at_the_next_step_when_its_time_is_up(tmp_path, answers):
+    asked = []
+
+    def is_up():
+        asked.append(1)
+        return len(asked) == answers
+
+    with pytest.raises(TimeLimitError, match="nothing was searched for"):
+        load_task(written(tmp_path, "500,10,200\n"), is_up=is_up)
+    assert len(asked) == answers
+
+
+def test_of_thousands_of_targets_in_yaml_not_all_are_read_when_the_time_is_up(tmp_path):
+    rows = "".join(f"  - {{position: [500, {i / 100}, 200]}}\n" for i in range(1000))
+    (tmp_path / "task.yaml").write_text("length_unit: mm\nrobot: malleable-2dof\ntargets:\n" + rows)
+    asked = []
+    with pytest.raises(TimeLimitError, match="much faster from a table"):
+        load_task(tmp_path / "task.yaml", is_up=lambda: asked.append(1) or len(asked) == 3)
+    assert len(asked) == 3

@@ -19,8 +19,8 @@ def drawn(seed, count=40):
 
 def explored(task, seed, stop=None, count=40):
     rng = np.random.default_rng(seed)
-    valleys = Valleys.of(task, drawn(seed, count))
-    return valleys, valleys.explored(lambda: Population.sample(ROBOT, 40, rng), rng, Watch(stop=stop))
+    valleys = replace(Valleys.of(task, drawn(seed, count)), watch=Watch(stop=stop))
+    return valleys, valleys.explored(lambda: Population.sample(ROBOT, 40, rng), rng)
 
 
 def valleys_of(*costs, drawn):
@@ -28,7 +28,7 @@ def valleys_of(*costs, drawn):
     count = len(costs)
     shapes = Population.sample(ROBOT, count, np.random.default_rng(0))
     refined = Refined(shapes, np.zeros((count, 1, 2)), np.square(costs))
-    return Valleys(noisy(0, count=1), refined, refined.cost, drawn)
+    return Valleys(noisy(0, count=1), Watch(), refined, refined.cost, drawn)
 
 
 def test_valleys_are_agreed_upon_when_a_share_of_the_fresh_shapes_ended_in_the_best():

@@ -2,11 +2,17 @@
 
 import math
 
+import numpy as np
 import pytest
-from planted import planted_task
+from planted import ROBOT, noisy, planted_task, scanned
 from sampled_shapes import noisy_task
 
-from synth.synthesis import Status, solve
+from synth.synthesis import Status, all_targets, solve
+from synth.synthesis.all_targets import verified_in_time
+from synth.synthesis.population import Population
+from synth.synthesis.refinement import refine
+from synth.synthesis.search import Search
+from synth.synthesis.verification import verify
 from synth.synthesis.watch import Watch
 
 
@@ -36,6 +42,26 @@ def test_it_is_up_when_the_time_is_and_stays_so():
     assert watch.interrupted
     assert watch.remaining == 0.0
     assert Watch().remaining == math.inf
+
+
+def test_what_is_kept_back_is_there_after_the_block():
+    clock = Clock()
+    watch = Watch(10.0, clock=clock)
+    with watch.keeping_back(0.8):
+        clock.now += 2.5
+        assert watch.is_up()
+    assert not watch.is_up()
+    assert watch.interrupted
+    assert watch.remaining == pytest.approx(7.5)
+    with Watch(clock=clock).keeping_back(0.5):
+        assert Watch(clock=clock).remaining == math.inf
+
+
+def test_a_run_aside_knows_how_much_time_is_left():
+    clock = Clock()
+    outer = Watch(10.0, clock=clock)
+    clock.now += 4.0
+    assert outer.aside().remaining == pytest.approx(6.0)
 
 
 def test_a_wish_to_stop_is_asked_for_until_it_is_there():
@@ -143,3 +169,63 @@ def test_a_proof_that_is_stopped_says_so():
     assert solution.bound.lower_bound < solution.bound.best_found
     assert solution.notes == ("the proof was stopped early: more time may prove more",)
     assert solution.status is not Status.LIMIT  # the search itself was complete
+
+
+@pytest.fixture
+def seconds_each(monkeypatch):
+    """A clock that goes on by a second for each target that is verified."""
+    clock = Clock()
+
+    def slow(task, arm):
+        clock.now += len(task.targets)
+        return verify(task, arm)
+
+    monkeypatch.setattr(all_targets, "verify", slow)
+    return clock
+
+
+def test_as_many_targets_are_verified_as_there_is_time_for(seconds_each):
+    task, arm = scanned(9000, noise=0.0)
+    some, design = verified_in_time(task, arm, Watch(7000.0, clock=seconds_each))
+    check = design.verification
+    assert len(some.targets) == 4000  # 2000 to see how long one takes, then 0.8 of the 5000 s left
+    assert check.unseen == 5000
+    assert all(check.within_tolerance)
+    assert not check.found  # whatever was seen
+
+
+def test_with_time_for_all_targets_all_are_verified(seconds_each):
+    task, arm = scanned(9000, noise=0.0)
+    for limit in (14_000.0, math.inf):
+        some, design = verified_in_time(task, arm, Watch(limit, clock=seconds_each))
+        assert some is task
+        assert design.verification.found
+
+
+def test_a_shape_seen_with_some_targets_is_told_as_that(seconds_each):
+    task, _ = scanned(9000, tolerance=20e-3)
+    watch = Watch(3000.0, clock=seconds_each)
+    search = Search(task, task_part(task), 0, watch, 0)
+    search.run()
+    solution = search.solution()
+    assert solution.status is Status.LIMIT
+    assert not solution.found
+    assert len(solution.task.targets) == len(solution.best.verification.misses) < 9000
+    assert f"only {len(solution.task.targets)} of 9000 targets" in solution.notes[0]
+
+
+def task_part(task):
+    return all_targets.random_part(task, 40, 0)
+
+
+def test_no_step_of_a_refinement_is_taken_after_the_time():
+    steps = []
+
+    def is_up():
+        steps.append(1)
+        return len(steps) == 3
+
+    population = Population.sample(ROBOT, 50, np.random.default_rng(0))
+    stopped = refine(noisy(5), population, is_up=is_up)
+    assert len(steps) == 3
+    assert (stopped.cost == refine(noisy(5), population, iterations=3).cost).all()

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 _T = TypeVar("_T")
 # What drawing the sheet and writing take on a usual machine, s; and of many targets each.
 _WRITING, _WRITING_ONE = 1.0, 3e-5
+_LATE = 0.4  # s, in which a small task is still read and looked at
 DEBUG = "SYNTH_DEBUG"  # if this is set in the environment, what nobody foresaw is shown with its traceback
 
 
@@ -57,9 +58,9 @@ class Session:
         """The time left, s; never below 0."""
         return max(self._until - self._clock(), 0.0)
 
-    def is_up(self) -> bool:
-        """Whether the time is up, or the user wishes to stop."""
-        return self.stop() or self.remaining <= 0.0
+    def is_late(self) -> bool:
+        """Whether the time is up for a while, so that it is too late to begin anything."""
+        return self._clock() > self._until + _LATE
 
     def for_search(self, count: int) -> float:
         """Return the time left for a search, s: what is found is then still to be drawn and written.

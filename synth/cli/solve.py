@@ -50,7 +50,7 @@ def solve_file(
     from synth.export import SOLUTION_FILES, prepare_directory
     from synth.task import load_task
 
-    task = load_task(file, is_up=session.is_up)
+    task = load_task(file, is_up=session.is_late)
     written = len(task.targets) if output is not None or form == "json" else 0
     if output is not None:
         prepare_directory(output, SOLUTION_FILES)

@@ -30,7 +30,7 @@ def ends_of(solid: Solid) -> FloatArray:
 
 
 def draw_obstacle(axes: Axes, name: str, solid: Solid, view: tuple[int, int], labels: Labels) -> None:
-    """Draw the outline of a convex solid, hatched, and name it in the middle of what is seen of it."""
+    """Draw the outline of a convex solid; if it has a name, hatched and named in the middle of what is seen."""
     frame = np.array([axes.get_xlim(), axes.get_ylim()])
     outline = clipped(1e3 * solid_outline(solid, view), frame)
     if not len(outline):
@@ -39,13 +39,14 @@ def draw_obstacle(axes: Axes, name: str, solid: Solid, view: tuple[int, int], la
         *outline.T,
         facecolor="#F4EFE0",
         edgecolor="#7A6A3A",
-        hatch="xxx",
+        hatch="xxx" if name else None,
         linewidth=0.7,
         alpha=0.75,
         zorder=0.5,
     )
     middle = 0.5 * (outline.min(axis=0) + outline.max(axis=0))
-    labels.add(shortened(name, _LABEL, FONT_SIZE), middle)
+    if name:
+        labels.add(shortened(name, _LABEL, FONT_SIZE), middle)
 
 
 def clipped(corners: FloatArray, frame: FloatArray) -> FloatArray:

@@ -31,6 +31,7 @@ LINK, AXIS, TARGET, GHOST = "#0072B2", "#D55E00", "#000000", "#8C8C8C"
 TOP, FRONT, SIDE = (0, 1), (0, 2), (1, 2)
 _POINTS_PER_MM = 72.0 / 25.4
 MOST_DRAWN = 1000  # targets, beside those that have a label: more cover each other
+_MOST_NAMED = 30  # obstacles: names of more would hide the drawing, and take seconds to place
 _MOST_OF_LINK = 1000  # points of a very long link
 _AROUND = 120.0  # mm, how far obstacles are shown beyond the arm and its targets
 _FAR, _NEAR_SIDE = 250.0, 60.0  # mm; what begins farther off is not drawn, and of what does not this much
@@ -149,8 +150,9 @@ def draw_view(axes: Axes, scene: Scene, view: tuple[int, int], scale: float) -> 
     tube = scene.diameter / scale * _POINTS_PER_MM
     if scene.floor is not None and view != TOP:
         _draw_floor(axes, scene.floor)
+    few = len(scene.obstacles) <= _MOST_NAMED
     for name, solid in scene.obstacles:
-        draw_obstacle(axes, name, solid, view, labels)
+        draw_obstacle(axes, name if few else "", solid, view, labels)
     for line, width in ((scene.ghost, tube), (scene.rigid, 0.5 * tube)):
         axes.plot(*line[:, pick].T, color="#E4E4E4", linewidth=width, solid_capstyle="butt", zorder=1)
         axes.plot(*line[:, pick].T, color=GHOST, linewidth=0.8, linestyle="--", zorder=1)

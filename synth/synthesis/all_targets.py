@@ -69,7 +69,8 @@ def for_all_targets(task: Task, designs: Sequence[Design], seed: int, watch: Wat
     """
     with watch.on("solving"):
         arms = ranked(task, [design.arm for design in designs], seed, watch)
-    whole, verified = WholeTask(task), []
+    whole = WholeTask(task)
+    verified: list[Design] = []
     for found in arms[: max(1, _VERIFIED_AT_MOST // len(task.targets))]:
         if verified and watch.is_up():
             break
@@ -88,8 +89,8 @@ def for_all_targets(task: Task, designs: Sequence[Design], seed: int, watch: Wat
         elif not unseen:
             verified.append(design)
         elif not verified:
-            return replace(whole, task=seen, designs=best_of(seen, [design]))
-    return replace(whole, designs=best_of(task, verified))
+            return replace(whole, task=seen, designs=best_of(seen, [design], watch.is_up))
+    return replace(whole, designs=best_of(task, verified, watch.is_up))
 
 
 def verified_in_time(task: Task, arm: Arm, watch: Watch) -> tuple[Task, Design]:

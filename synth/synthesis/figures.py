@@ -12,8 +12,11 @@ from synth.synthesis.forgiveness import Forgiveness, hand_forgiveness
 from synth.synthesis.margins import Margins
 from synth.synthesis.motion import MOST_MOTIONS, routed
 from synth.synthesis.verification import verify
+from synth.synthesis.watch import never
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from synth.robot import LinkShape
     from synth.synthesis.motion import Motion
     from synth.synthesis.solution import Design
@@ -46,17 +49,18 @@ class Figures:
     change: float | None
 
 
-def judged(task: Task, design: Design) -> Design:
+def judged(task: Task, design: Design, is_up: Callable[[], bool] = never) -> Design:
     """Return a design with its ways and its figures, at the joint angles that suit these best.
 
     Args:
         task: The task.
         design: The design, verified for the task.
+        is_up: Asked whether to leave out the ways of one that misses a target: nobody is told of them.
     """
     if design.figures is not None:
         return design
     ways: tuple[Motion, ...] = ()
-    if len(task.targets) <= MOST_MOTIONS:
+    if len(task.targets) <= MOST_MOTIONS and (design.verification.found or not is_up()):
         ways, joints = routed(task, design)
         if not np.array_equal(joints, design.verification.joints):
             design = replace(design, verification=verify(task, design.arm, joints, keep=True))

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.synthesis.figures import judged
+from synth.synthesis.watch import never
 from synth.task import Objective
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -125,11 +126,16 @@ def objective(task: Task, design: Design) -> float:
     return float(weighted.max() if task.objective is Objective.MINIMAX else weighted.sum())
 
 
-def best_of(task: Task, designs: Sequence[Design]) -> tuple[Design, ...]:
+def best_of(task: Task, designs: Sequence[Design], is_up: Callable[[], bool] = never) -> tuple[Design, ...]:
     """Return the best designs in order, judged; each differs from those before by more than a hand can tell.
 
     Those that reach every target are in the order of `preferences`, and no others stand beside them; best
     efforts are in the order of the task's objective, with those that miss nearly as little.
+
+    Args:
+        task: The task.
+        designs: The designs, verified for it.
+        is_up: As for `judged`.
     """
     found = [judged(task, design) for design in designs if design.verification.found]
     if found:
@@ -141,7 +147,7 @@ def best_of(task: Task, designs: Sequence[Design]) -> tuple[Design, ...]:
         return _distinct([found[index] for index in order if beside[index]])
     misses = sorted((objective(task, design), index) for index, design in enumerate(designs))
     near = [designs[index] for value, index in misses if value <= _COMPARABLE * misses[0][0]]
-    return tuple(judged(task, design) for design in _distinct(near))
+    return tuple(judged(task, design, is_up) for design in _distinct(near))
 
 
 def _stand_beside(table: FloatArray, best: FloatArray, less_margin: float) -> NDArray[np.bool_]:

@@ -50,9 +50,8 @@ def chosen_joints(
         misses[1][misses[1] <= task.tolerances] = -1.0  # before all others
     best, each = np.argmin(misses, axis=0), np.arange(len(targets))
     chosen, sunk = candidates[best, each], np.isinf(misses[best, each])
-    room = Room.of(task, arm, chosen)
     # The nearest one mostly does; the branches of the inverse kinematics are looked at where it does not.
-    stuck = np.flatnonzero(sunk | ~room.clear)
+    stuck = np.flatnonzero(sunk | ~clear_of_everything(task, arm, chosen))
     if len(stuck):
         branches = arm.inverse_kinematics(targets[stuck])
         others = np.moveaxis(branches.joints, -2, 0)
@@ -61,11 +60,10 @@ def chosen_joints(
         candidates, misses = (
             np.concatenate(pair) for pair in ((candidates[:, stuck], others), (misses[:, stuck], off))
         )
-        around = Room.of(task, arm, candidates)
-        best, each = np.argmin(np.where(around.clear, misses, np.inf), axis=0), np.arange(len(stuck))
+        clear = clear_of_everything(task, arm, candidates)
+        best, each = np.argmin(np.where(clear, misses, np.inf), axis=0), np.arange(len(stuck))
         chosen[stuck], sunk[stuck] = candidates[best, each], np.isinf(misses[best, each])
-        room = room.replaced(stuck, around.chosen(best))
-    return chosen, sunk, room
+    return chosen, sunk, Room.of(task, arm, chosen)
 
 
 def _misses(task: Task, arm: Arm, candidates: FloatArray, targets: FloatArray) -> FloatArray:
@@ -128,17 +126,6 @@ class Room:
         """Whether the arm keeps clear of obstacles and of itself, but for rounding, shape (..., n)."""
         return np.asarray(self.least >= -LENGTH_SLACK)
 
-    def chosen(self, best: NDArray[np.intp]) -> Room:
-        """Return the room at one candidate for each target, shape (n,)."""
-        index = best, np.arange(len(best))
-        return Room(self.from_obstacles[index], self.rod_from_tube[index], self.tube_from_itself)
-
-    def replaced(self, some: NDArray[np.intp], other: Room) -> Room:
-        """Return the room with that of some targets replaced."""
-        from_obstacles, rod_from_tube = self.from_obstacles.copy(), self.rod_from_tube.copy()
-        from_obstacles[some], rod_from_tube[some] = other.from_obstacles, other.rod_from_tube
-        return Room(from_obstacles, rod_from_tube, self.tube_from_itself)
-
 
 def seen_by(task: Task, arm: Arm) -> tuple[Solid, ...]:
     """Return the obstacles of a task in the base frame of an arm, wherever that stands."""
@@ -146,5 +133,13 @@ def seen_by(task: Task, arm: Arm) -> tuple[Solid, ...]:
 
 
 def clear_of_everything(task: Task, arm: Arm, joints: FloatArray) -> NDArray[np.bool_]:
-    """Return whether an arm at joint angles, shape (n, 2), rad, keeps clear of obstacles and of itself."""
-    return Room.of(task, arm, joints).clear
+    """Return whether an arm at joint angles, shape (..., 2), rad, keeps clear of obstacles and of itself.
+
+    How clear it is, or how deep in something, is not looked for: that takes many times as long.
+    """
+    body, solids, flat = ArmBody(arm), seen_by(task, arm), joints.reshape(-1, 2)
+    parts = np.split(flat, range(_TOGETHER, len(flat), _TOGETHER))
+    # A way that ends where it starts is one of which nobody asks how deep it is in something.
+    clear = [body.from_obstacles(part, solids, end=part, enough=0.0) >= -LENGTH_SLACK for part in parts]
+    of_itself = _rod_from_tube(body, flat[:, 1]) >= -LENGTH_SLACK
+    return (np.concatenate(clear).all(axis=(1, 2)) & of_itself).reshape(joints.shape[:-1])

@@ -41,6 +41,7 @@ _LOOKED_AT = 4  # shapes that a person would want, for each alternative
 _ALTERNATIVES_THAT_MISS = 2  # likewise, at most, where no shape meets all targets
 _GAIN = 1e-3  # of the objective: the least that is worth another start
 _PROOF_TIME = 60.0  # s
+_LATE = 0.2  # s after the time is up, from when on not even unpolished starts are looked at
 _PROVEN_IN_TIME = 50_000  # targets: whether each of more is within reach takes a second or longer
 # So many targets are looked at in the time of the search for a part of them; of all the time it is left some.
 _AS_LONG, _LEAST_SEARCH = 30_000, 0.2
@@ -109,7 +110,8 @@ class Search:
                 # A start that was not polished is better than nothing.
                 if not self.polishing.designs:
                     self.polishing.keep(start.arm, start.joints)
-                if self.polishing.designs or len(self.polishing.blocked) >= _STARTS_WHEN_IMPOSSIBLE:
+                enough = len(self.polishing.blocked) >= _STARTS_WHEN_IMPOSSIBLE
+                if self.polishing.designs or enough or self.watch.overdue > _LATE:
                     return
                 continue
             if not self._may_be_better(start):
@@ -205,7 +207,8 @@ class Search:
         """Rank what was found and say what it is worth."""
         whole = WholeTask(self.task)
         with self.kept():
-            whole = self._whole(best_of(self.part, [*self.polishing.designs, *self._changing_little()]))
+            known = [*self.polishing.designs, *self._changing_little()]
+            whole = self._whole(best_of(self.part, known, self.watch.is_up))
         if self.broke_off is not None and not whole.designs:
             with self.kept():
                 for one in best_of(self.part, self.polishing.designs)[:1]:

@@ -99,6 +99,11 @@ class Watch:
         return max(self._time_limit - self.elapsed, 0.0)
 
     @property
+    def overdue(self) -> float:
+        """For how long the time is up, s; negative while it is not."""
+        return self.elapsed - self._time_limit
+
+    @property
     def interrupted(self) -> bool:
         """Whether somebody asked and was told that the time is up: something may be left undone."""
         return self._interrupted
