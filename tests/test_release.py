@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from planted import noisy
 from planted_blocked import blocked_task
 
 from synth.export import solution_to_json
@@ -151,3 +152,13 @@ def test_where_several_limits_block_together_it_says_that(monkeypatch):
     monkeypatch.setattr(release, "_base_moved", lambda *_: None)
     (note,) = explain(solved(task)).notes
     assert "with all limits relaxed together the task is met" in note
+
+
+def test_nothing_is_begun_for_which_the_time_is_shorter_than_verifying_took():
+    solution = solve(noisy(5), alternatives=0)
+    slow = replace(solution, time=replace(solution.time, verifying=20.0))
+    told = []
+    explained = explain(slow, time_limit=19.0, progress=lambda progress: told.append(progress.phase))
+    assert len(set(told)) <= 3  # the first limit, and what would come after all of them
+    assert not explained.releases
+    assert "stopped early: 0 of" in explained.notes[-1]

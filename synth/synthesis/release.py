@@ -66,7 +66,8 @@ def explain(
     refuse_unless("solution", solution, Solution)
     if solution.found:
         return solution
-    watch = Watch(time_limit, stop=stop, report=progress)
+    # What is begun is still verified when the time is up, which takes as long as it took before.
+    watch = Watch(max(time_limit - solution.time.verifying, 0.0), stop=stop, report=progress)
     found, limits = [], tuple(limits_of(solution.task))
     looked_at = []
     for limit in limits:
