@@ -30,7 +30,7 @@ def ends_of(solid: Solid) -> FloatArray:
 
 
 def draw_obstacle(axes: Axes, name: str, solid: Solid, view: tuple[int, int], labels: Labels) -> None:
-    """Draw the outline of a convex solid; if it has a name, hatched and named in the middle of what is seen."""
+    """Draw the outline of a convex solid; if it has a name, hatched, and named in its middle."""
     frame = np.array([axes.get_xlim(), axes.get_ylim()])
     outline = clipped(1e3 * solid_outline(solid, view), frame)
     if not len(outline):

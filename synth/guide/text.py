@@ -219,9 +219,7 @@ def _target_lines(task: Task, design: Design) -> list[str]:
     if count > _MOST_TARGETS:
         reached = sum(design.verification.within_tolerance)
         are = "is" if reached == 1 else "are"
-        lines = [
-            _bullet(f"{reached} of {count} targets {are} within tolerance; the {_MOST_TARGETS} worst:")
-        ]
+        lines = [_bullet(f"{reached} of {count} targets {are} within tolerance; the {_MOST_TARGETS} worst:")]
         shown = worst_targets(task, design, _MOST_TARGETS)
     targets = target_results(task, design, shown)
     width = max(len(target.name) for target in targets)
