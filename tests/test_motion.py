@@ -9,7 +9,7 @@ from planted_obstacles import SCENES, planted_with_obstacles
 
 from synth.geometry import Box
 from synth.synthesis import motions, verify
-from synth.synthesis.solution import Design
+from synth.synthesis.design import Design
 from synth.task import Obstacle
 
 

@@ -9,7 +9,7 @@ from planted import planted_task
 from synth.synthesis import verify
 from synth.synthesis.figures import judged
 from synth.synthesis.ranking import STEPS, best_of, preferences, preferred
-from synth.synthesis.solution import Design
+from synth.synthesis.design import Design
 
 GOOD = {
     "ways_missing": 0,

@@ -14,7 +14,7 @@ from synth.synthesis.population import Population, free_directions, in_equal_arc
 from synth.synthesis.postures import Aims, Postures
 from synth.synthesis.refinement import _curvature_of_norm, cleared, level, refine, relative_weights
 from synth.synthesis.residuals import Residuals
-from synth.synthesis.separation import overlaps
+from synth.synthesis.overlaps import overlaps
 from synth.task import Objective, Obstacle, PointTarget, Topology
 
 FREE = replace(

@@ -8,7 +8,7 @@ from planted import ROBOT, noisy, planted_task
 
 from synth.synthesis.population import Population
 from synth.synthesis.refinement import Refined
-from synth.synthesis.screening import starts
+from synth.synthesis.start_points import starts
 from synth.synthesis.valleys import Valleys
 from synth.synthesis.watch import Watch
 

@@ -16,7 +16,7 @@ from synth.guide.settings import best_settings
 from synth.measurement import StandingArm, examine, sigma_of
 from synth.measurement.marker_file import load_readings
 from synth.synthesis import verify
-from synth.synthesis.solution import Design
+from synth.synthesis.design import Design
 from synth.task.solution_file import load_shapes
 
 if TYPE_CHECKING:

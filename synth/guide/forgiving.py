@@ -12,7 +12,7 @@ from synth.guide.hand import Hand, errors
 from synth.measurement.standing_arm import StandingArm
 from synth.robot import Interval, link_to_pose
 from synth.synthesis import verify
-from synth.synthesis.solution import Design
+from synth.synthesis.design import Design
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

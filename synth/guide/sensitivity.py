@@ -14,7 +14,7 @@ from synth.synthesis.displaced import misses_displaced, rotations
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.robot import Arm
-    from synth.synthesis.solution import Design
+    from synth.synthesis.design import Design
     from synth.task import Task
 
 # A miss below this has no direction but that of rounding: the surface's normal takes its place.

@@ -21,7 +21,8 @@ from synth.task import DEFAULT_TOLERANCE
 
 if TYPE_CHECKING:
     from synth.guide.guide import Guide
-    from synth.synthesis.solution import Design, Solution
+    from synth.synthesis.design import Design
+    from synth.synthesis.solution import Solution
     from synth.task import Task
 
 FOUND, MISSED, BULLET = "✓", "✗", "•"

@@ -4,7 +4,8 @@ from synth.synthesis.bound import Bound
 from synth.synthesis.forgiveness import Forgiveness, hand_forgiveness
 from synth.synthesis.motion import MOST_MOTIONS, Motion, motions
 from synth.synthesis.release import explain
-from synth.synthesis.solution import Design, NotFoundError, Release, Solution, Status, TargetResult
+from synth.synthesis.design import Design
+from synth.synthesis.solution import NotFoundError, Release, Solution, Status, TargetResult
 from synth.synthesis.solve import solve
 from synth.synthesis.verdict import showing
 from synth.synthesis.verification import Verification, Violation, verify

@@ -15,7 +15,7 @@ from synth.robot import Arm
 from synth.synthesis.bound import Bound, prove
 from synth.synthesis.nlp import Structure, shared_nlp
 from synth.synthesis.population import ARCS
-from synth.synthesis.screening import starts
+from synth.synthesis.start_points import starts
 from synth.task import Objective
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.synthesis.bound import LinkEnd
-    from synth.synthesis.solution import Design
+    from synth.synthesis.design import Design
     from synth.synthesis.watch import Watch
     from synth.task import Task
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from synth.robot import LinkShape
     from synth.synthesis.motion import Motion
-    from synth.synthesis.solution import Design
+    from synth.synthesis.design import Design
     from synth.task import Task
 
 

@@ -19,6 +19,7 @@ from synth.synthesis.population import Population, in_equal_arcs
 from synth.synthesis.postures import Aims, Postures
 from synth.synthesis.refinement import Refined, level, refine
 from synth.synthesis.thinning import thinned
+from synth.synthesis.turned_about_axis_1 import SAMPLE, as_it_is_and_turned, random_part, relative_misses
 from synth.task import Objective
 
 if TYPE_CHECKING:
@@ -32,8 +33,6 @@ if TYPE_CHECKING:
 # That the nonlinear program knows all at once.
 _MOST_TARGETS = {Objective.LEAST_SQUARES: 100, Objective.MINIMAX: 40}
 _PART = 40  # of more targets, those that it knows at first
-# Steps with a larger part, and then with all.
-_SAMPLE, _STEPS, _STEPS_WITH_ALL = 2000, 8, 2
 _LEVELLINGS = 3
 
 
@@ -63,7 +62,7 @@ def ranked(task: Task, arms: Sequence[Arm], seed: int, watch: Watch) -> list[Arm
         seed: The same larger part for the same seed.
         watch: When it is up, the other arms are left out.
     """
-    some = random_part(task, _SAMPLE, seed)
+    some = random_part(task, SAMPLE, seed)
     missing: list[tuple[float, Arm]] = []
     reaching: list[Arm] = []
     for arm in arms:
@@ -71,93 +70,12 @@ def ranked(task: Task, arms: Sequence[Arm], seed: int, watch: Watch) -> list[Arm
             break
         watch.tell(phase="looking at more targets")
         for candidate in as_it_is_and_turned(some, arm, watch):
-            relative = _relative_misses(some, candidate)
+            relative = relative_misses(some, candidate)
             if np.all(relative <= np.sqrt(some.weights)):
                 reaching.append(candidate)
             else:
                 missing.append((float(np.mean(relative**2)), candidate))
     return [*reaching, *(arm for _, arm in sorted(missing, key=lambda pair: pair[0]))]
-
-
-def random_part(task: Task, count: int, seed: int) -> Task:
-    """Return a task with so many of its targets, or the task itself if it has no more.
-
-    Args:
-        task: The task.
-        count: How many targets to keep.
-        seed: The same part for the same seed.
-    """
-    if count >= len(task.targets):
-        return task
-    chosen = np.random.default_rng([seed, count]).choice(len(task.targets), count, replace=False)
-    return replace(task, targets=task.table.take(np.sort(chosen)))
-
-
-def improved(task: Task, arm: Arm, watch: Watch) -> Arm:
-    """Return an arm after Gauss-Newton steps on all targets, for the sum of their squared misses.
-
-    The steps know the limits of the link and of the joints, but neither floor nor obstacles.
-
-    Args:
-        task: The task with all its targets.
-        arm: The robot in a shape of equal arcs, near the best for a part of the targets.
-        watch: When it is up, no more steps are taken.
-    """
-    squares = replace(task, objective=Objective.LEAST_SQUARES)
-    step = 0.0  # s, for each target
-    for count, steps in ((_SAMPLE, _STEPS), (len(task.targets), _STEPS_WITH_ALL)):
-        # Looking at all targets afterwards takes about as long as a step.
-        if watch.is_up() or watch.remaining < (steps + 2) * step * count:
-            break
-        watch.tell(phase="improving for all targets")
-        some, began = random_part(squares, count, 0), watch.elapsed
-        refined = refine(some, Population.of(arm), iterations=steps, is_up=watch.is_up)
-        arm = refined.population.arm(0, task.base)
-        step = (watch.elapsed - began) / (steps * count)
-    return arm
-
-
-def as_it_is_and_turned(task: Task, arm: Arm, watch: Watch) -> Iterator[Arm]:
-    """Yield an arm and, if it misses a target, another that is turned about axis 1.
-
-    Args:
-        task: The task.
-        arm: An arm that was found for a part of its targets.
-        watch: Ends it before the other one.
-    """
-    yield arm
-    if watch.is_up() or np.all(_relative_misses(task, arm) <= np.sqrt(task.weights)):
-        return
-    turned = _with_joint_1_clear(task, arm, watch)
-    if turned is not None:
-        yield turned
-
-
-def _with_joint_1_clear(task: Task, arm: Arm, watch: Watch) -> Arm | None:
-    """Return an arm of about the same workspace that has the dead zone of joint 1 where no target is.
-
-    Returns:
-        The arm; None if the targets leave no gap, or no link was found.
-    """
-    limits = task.robot.joint_limits
-    around = replace(limits, base=Interval(-math.pi, math.pi))
-    free = improved(replace(task, robot=replace(task.robot, joint_limits=around)), arm, watch)
-    nearest = Postures.nearest(Aims(task.positions, around), Population.of(free).kinematics)
-    angles = np.sort(nearest.theta1[0])
-    gaps = np.diff(angles, append=angles[0] + 2.0 * math.pi)
-    widest = int(np.argmax(gaps))
-    # Joint 1 is to stand at theta1 + turn: the gap then spans from its upper limit to the lower one.
-    least = limits.base.lower + 2.0 * math.pi - angles[widest] - gaps[widest]
-    most = limits.base.upper - angles[widest]
-    if least > most:
-        return None
-    turn = Interval(float(least), float(most))
-    rotation, end = free.shape.end_frame()
-    shape = link_to_pose(task.robot.link, end, rotation[:, 0], theta1=turn)
-    if shape is None:
-        return None
-    # The link's end has the same axis 2; what joint 2 needs, too, the steps see to.
-    return improved(task, in_equal_arcs(replace(free, robot=task.robot, shape=shape)), watch)
 
 
 def levelled(task: Task, arm: Arm, watch: Watch) -> Arm:
@@ -172,27 +90,23 @@ def levelled(task: Task, arm: Arm, watch: Watch) -> Arm:
         watch: When it is up, no more steps are taken.
     """
     began = watch.elapsed
-    _relative_misses(random_part(task, _SAMPLE, 0), arm)
-    look = (watch.elapsed - began) * len(task.targets) / _SAMPLE  # s, at all targets, with room
+    relative_misses(random_part(task, SAMPLE, 0), arm)
+    look = (watch.elapsed - began) * len(task.targets) / SAMPLE  # s, at all targets, with room
     if watch.remaining < 3.0 * look:
         return arm
-    least = _relative_misses(task, arm)
+    least = relative_misses(task, arm)
     for _ in range(_LEVELLINGS):
         # Each time, and for their verification, all targets are looked at.
         if watch.is_up() or watch.remaining < 3.0 * look:
             break
         watch.tell(phase="levelling the misses")
-        worst = task.table.take(np.sort(np.argsort(-least, kind="stable")[:_SAMPLE]))
+        worst = task.table.take(np.sort(np.argsort(-least, kind="stable")[:SAMPLE]))
         joints, _misses = arm.closest_joints(worst.positions)
         some = replace(task, targets=worst, objective=Objective.MINIMAX)
         start = Refined(Population.of(arm), joints[None], np.zeros(1))
         lower = level(some, start, watch.is_up).population.arm(0, task.base)
-        misses = _relative_misses(task, lower)
+        misses = relative_misses(task, lower)
         if misses.max() >= least.max():
             break
         arm, least = lower, misses
     return arm
-
-
-def _relative_misses(task: Task, arm: Arm) -> FloatArray:
-    return np.asarray(np.sqrt(task.weights) * arm.closest_joints(task.table.positions)[1] / task.tolerances)

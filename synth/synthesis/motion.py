@@ -19,7 +19,8 @@ from synth.checks import refuse_unless
 from synth.robot import ArmBody, turned
 from synth.synthesis.margins import joint_shortfalls
 from synth.synthesis.room import seen_by
-from synth.synthesis.solution import Design, joints_reaching
+from synth.synthesis.design import Design
+from synth.synthesis.solution import joints_reaching
 from synth.task import Task
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from synth.synthesis.nlp import Structure, SynthesisNlp, shared_nlp
 from synth.synthesis.population import ARCS
 from synth.synthesis.ranking import objective
 from synth.synthesis.separation import separations
-from synth.synthesis.solution import Design
+from synth.synthesis.design import Design
 from synth.synthesis.verification import verify
 from synth.task import Objective
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.robot import Arm
-    from synth.synthesis.screening import Start
+    from synth.synthesis.start_points import Start
     from synth.synthesis.separation import Separation
     from synth.synthesis.watch import Watch
     from synth.task import Task

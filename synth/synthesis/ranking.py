@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.synthesis.figures import Figures
-    from synth.synthesis.solution import Design
+    from synth.synthesis.design import Design
     from synth.task import Task
 
 _ALTERNATIVES = 8

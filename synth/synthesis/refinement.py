@@ -16,7 +16,7 @@ from synth.synthesis.category_offsets import category_offsets, category_slopes
 from synth.synthesis.population import Population, free_directions, into_limits
 from synth.synthesis.postures import Aims, Postures
 from synth.synthesis.residuals import Residuals
-from synth.synthesis.separation import overlaps
+from synth.synthesis.overlaps import overlaps
 from synth.synthesis.watch import never
 from synth.task import Objective
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.synthesis.relaxed_limits import Limit
-    from synth.synthesis.solution import Design
+    from synth.synthesis.design import Design
     from synth.synthesis.watch import Progress
     from synth.task import Task
 

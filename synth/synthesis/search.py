@@ -19,8 +19,9 @@ from synth.synthesis.impossibility import why_impossible
 from synth.synthesis.polishing import Polishing
 from synth.synthesis.population import in_equal_arcs
 from synth.synthesis.ranking import best_of, leaves_no_wish, objective
-from synth.synthesis.screening import Start, starts
-from synth.synthesis.solution import Design, Solution, Status
+from synth.synthesis.start_points import Start, starts
+from synth.synthesis.design import Design
+from synth.synthesis.solution import Solution, Status
 from synth.synthesis.verdict import message, why_no_better
 from synth.synthesis.verification import verify
 from synth.synthesis.wished import wished

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
 
     from synth.robot import Arm
     from synth.synthesis.bound import Bound
-    from synth.synthesis.figures import Figures
-    from synth.synthesis.motion import Motion
+    from synth.synthesis.design import Design
     from synth.synthesis.verification import Verification
     from synth.synthesis.watch import Timing
     from synth.task import Task
@@ -50,23 +49,6 @@ class NotFoundError(SynthError):
     def __init__(self, solution: Solution) -> None:
         super().__init__(solution.message)
         self.solution = solution
-
-
-@dataclass(frozen=True)
-class Design:
-    """A shape of the robot and what the independent check says of it.
-
-    Attributes:
-        arm: The robot in the shape.
-        verification: What it does for the task.
-        ways: From each target to the next, once `judged` looked for them; empty for very many targets.
-        figures: By which shapes that reach every target are compared, likewise.
-    """
-
-    arm: Arm
-    verification: Verification
-    ways: tuple[Motion, ...] = ()
-    figures: Figures | None = None
 
 
 @dataclass(frozen=True)

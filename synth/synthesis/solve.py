@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Callable, Mapping, Sequence
 
-    from synth.synthesis.solution import Design, Solution
+    from synth.synthesis.design import Design
+    from synth.synthesis.solution import Solution
     from synth.synthesis.watch import Progress
     from synth.task import Task
 

@@ -21,7 +21,7 @@ import numpy as np
 
 from synth.synthesis.population import ARCS, Population, into_limits
 from synth.synthesis.refinement import Refined, cleared, level, refine
-from synth.synthesis.separation import overlaps
+from synth.synthesis.overlaps import overlaps
 from synth.synthesis.watch import Watch
 from synth.task import Objective
 

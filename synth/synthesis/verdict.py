@@ -14,7 +14,8 @@ from synth.synthesis.exact_starts import exact_designs
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from synth.synthesis.solution import Design, Solution, Status
+    from synth.synthesis.design import Design
+    from synth.synthesis.solution import Solution, Status
     from synth.task import Task
 
 _REACHED_WITHOUT_WAY = "every target is reached, but"

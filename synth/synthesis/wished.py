@@ -24,7 +24,7 @@ from synth.synthesis.postures import Aims, Postures
 from synth.synthesis.ranking import CALM, STEPS, is_content, preferences, preferred
 from synth.synthesis.refinement import refine, relative_weights
 from synth.synthesis.screening import estimated_misses
-from synth.synthesis.separation import overlaps
+from synth.synthesis.overlaps import overlaps
 from synth.task import Objective
 
 if TYPE_CHECKING:
