@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.many_targets import levelled, ranked
-from synth.synthesis.turned_about_axis_1 import improved, random_part
-from synth.synthesis.ranking import best_of
 from synth.synthesis.design import Design
+from synth.synthesis.many_targets import levelled, ranked
+from synth.synthesis.ranking import best_of
+from synth.synthesis.turned_about_axis_1 import improved, random_part
 from synth.synthesis.verification import verify
 from synth.task import Objective
 

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from synth.robot import LinkShape
-    from synth.synthesis.motion import Motion
     from synth.synthesis.design import Design
+    from synth.synthesis.motion import Motion
     from synth.task import Task
 
 

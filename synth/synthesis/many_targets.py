@@ -8,24 +8,20 @@ with every target.
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.robot import Interval, link_to_pose
-from synth.synthesis.population import Population, in_equal_arcs
-from synth.synthesis.postures import Aims, Postures
-from synth.synthesis.refinement import Refined, level, refine
+from synth.synthesis.population import Population
+from synth.synthesis.refinement import Refined, level
 from synth.synthesis.thinning import thinned
 from synth.synthesis.turned_about_axis_1 import SAMPLE, as_it_is_and_turned, random_part, relative_misses
 from synth.task import Objective
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
-    from synth.arrays import FloatArray
     from synth.robot import Arm
     from synth.synthesis.watch import Watch
     from synth.task import Task

@@ -17,9 +17,9 @@ import numpy as np
 from synth.arrays import FloatArray, frozen
 from synth.checks import refuse_unless
 from synth.robot import ArmBody, turned
+from synth.synthesis.design import Design
 from synth.synthesis.margins import joint_shortfalls
 from synth.synthesis.room import seen_by
-from synth.synthesis.design import Design
 from synth.synthesis.solution import joints_reaching
 from synth.task import Task
 

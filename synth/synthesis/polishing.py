@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from synth.errors import SolverError
+from synth.synthesis.design import Design
 from synth.synthesis.figures import judged
 from synth.synthesis.nlp import Structure, SynthesisNlp, shared_nlp
 from synth.synthesis.population import ARCS
 from synth.synthesis.ranking import objective
 from synth.synthesis.separation import separations
-from synth.synthesis.design import Design
 from synth.synthesis.verification import verify
 from synth.task import Objective
 
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.robot import Arm
-    from synth.synthesis.start_points import Start
     from synth.synthesis.separation import Separation
+    from synth.synthesis.start_points import Start
     from synth.synthesis.watch import Watch
     from synth.task import Task
 

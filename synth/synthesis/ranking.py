@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from synth.arrays import FloatArray
-    from synth.synthesis.figures import Figures
     from synth.synthesis.design import Design
+    from synth.synthesis.figures import Figures
     from synth.task import Task
 
 _ALTERNATIVES = 8

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.synthesis.category_offsets import category_offsets, category_slopes
+from synth.synthesis.overlaps import overlaps
 from synth.synthesis.population import Population, free_directions, into_limits
 from synth.synthesis.postures import Aims, Postures
 from synth.synthesis.residuals import Residuals
-from synth.synthesis.overlaps import overlaps
 from synth.synthesis.watch import never
 from synth.task import Objective
 

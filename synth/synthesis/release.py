@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from synth.arrays import FloatArray
-    from synth.synthesis.relaxed_limits import Limit
     from synth.synthesis.design import Design
+    from synth.synthesis.relaxed_limits import Limit
     from synth.synthesis.watch import Progress
     from synth.task import Task
 

@@ -2,31 +2,18 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from synth.synthesis.category_offsets import category_offsets
-from synth.synthesis.exact_starts import exact_designs, nearest_to_designs
-from synth.synthesis.many_targets import as_it_is_and_turned
-from synth.synthesis.population import ARM_LENGTH, Population
+from synth.synthesis.population import Population
 from synth.synthesis.refinement import relative_weights
-from synth.synthesis.thinning import thinned
-from synth.synthesis.valleys import Valleys
-from synth.synthesis.watch import Watch
-from synth.task import Objective
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from numpy.typing import NDArray
-
     from synth.arrays import FloatArray
-    from synth.robot import Arm, Robot
-    from synth.synthesis.refinement import Refined
+    from synth.robot import Robot
     from synth.task import Task
 
 _SHAPES = 20_000

@@ -15,13 +15,13 @@ from synth.errors import in_a_line
 from synth.robot import ANYWHERE, Interval, links_to_poses
 from synth.synthesis.all_targets import WholeTask, for_all_targets, verified_in_time
 from synth.synthesis.certificate import Certifier
+from synth.synthesis.design import Design
 from synth.synthesis.impossibility import why_impossible
 from synth.synthesis.polishing import Polishing
 from synth.synthesis.population import in_equal_arcs
 from synth.synthesis.ranking import best_of, leaves_no_wish, objective
-from synth.synthesis.start_points import Start, starts
-from synth.synthesis.design import Design
 from synth.synthesis.solution import Solution, Status
+from synth.synthesis.start_points import Start, starts
 from synth.synthesis.verdict import message, why_no_better
 from synth.synthesis.verification import verify
 from synth.synthesis.wished import wished

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from synth.robot import Arm
     from synth.synthesis.bound import Bound
     from synth.synthesis.design import Design
-    from synth.synthesis.verification import Verification
     from synth.synthesis.watch import Timing
     from synth.task import Task
 

@@ -8,17 +8,16 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.screening import screened, shapes_at_random
 from synth.synthesis.exact_starts import exact_designs, nearest_to_designs
-from synth.synthesis.turned_about_axis_1 import as_it_is_and_turned
-from synth.synthesis.population import ARM_LENGTH, Population
+from synth.synthesis.population import ARM_LENGTH
 from synth.synthesis.refinement import relative_weights
+from synth.synthesis.screening import screened, shapes_at_random
 from synth.synthesis.thinning import thinned
+from synth.synthesis.turned_about_axis_1 import as_it_is_and_turned
 from synth.synthesis.valleys import Valleys
 from synth.synthesis.watch import Watch
 from synth.task import Objective
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
-    from synth.robot import Arm, Robot
+    from synth.robot import Arm
     from synth.synthesis.refinement import Refined
     from synth.task import Task
 

@@ -15,11 +15,11 @@ import numpy as np
 from synth.robot import Interval, link_to_pose
 from synth.synthesis.population import Population, in_equal_arcs
 from synth.synthesis.postures import Aims, Postures
-from synth.synthesis.refinement import Refined, level, refine
+from synth.synthesis.refinement import refine
 from synth.task import Objective
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from synth.arrays import FloatArray
     from synth.robot import Arm

@@ -19,9 +19,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.synthesis.overlaps import overlaps
 from synth.synthesis.population import ARCS, Population, into_limits
 from synth.synthesis.refinement import Refined, cleared, level, refine
-from synth.synthesis.overlaps import overlaps
 from synth.synthesis.watch import Watch
 from synth.task import Objective
 

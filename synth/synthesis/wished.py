@@ -19,12 +19,12 @@ from synth.synthesis.exact_starts import exact_designs, nearest_to_designs
 from synth.synthesis.forgiveness import misses_after_a_hand
 from synth.synthesis.margins import Margins, drawn_in
 from synth.synthesis.motion import MOST_MOTIONS
+from synth.synthesis.overlaps import overlaps
 from synth.synthesis.population import ARCS, ARM_LENGTH, Population, into_limits
 from synth.synthesis.postures import Aims, Postures
 from synth.synthesis.ranking import CALM, STEPS, is_content, preferences, preferred
 from synth.synthesis.refinement import refine, relative_weights
 from synth.synthesis.screening import estimated_misses
-from synth.synthesis.overlaps import overlaps
 from synth.task import Objective
 
 if TYPE_CHECKING:
