@@ -11,7 +11,7 @@ from synth.export import draw_sheet
 from synth.guide import make_guide
 from synth.measurement import nearest_realisable
 from synth.robot import LinkReach
-from synth.task.measured_file import load_measurements
+from synth.measurement.distances.reading import load_measurements
 
 ROOT = Path(__file__).parents[1]
 TASK = ROOT / "problems" / "four-targets" / "task.yaml"

@@ -9,7 +9,7 @@ from planted import planted_task
 
 from synth.synthesis.bound.boxes import _CHARTS, Boxes
 from synth.synthesis.bound.misses import MissBounds
-from synth.synthesis.population import Population, into_limits
+from synth.synthesis.starts.shapes import Population, into_limits
 from synth.task import PointTarget, Task
 
 

@@ -6,7 +6,7 @@ from planted import ROBOT
 from standing import BARS, HOLD, SIGMA, seen, standing
 
 from synth.measurement import fit_arm
-from synth.measurement.standing_arm import FREEDOMS
+from synth.measurement.markers.standing_arm import FREEDOMS
 
 TIP = ROBOT.tip_offset
 

@@ -19,8 +19,8 @@ from synth.synthesis.bound.contraction import contracted, hull_of_cells
 from synth.synthesis.bound.forms import Circle
 from synth.synthesis.bound.limits import Limits, ReachTable
 from synth.synthesis.bound.linear import combined, multipliers
-from synth.synthesis.population import Population
-from synth.synthesis.watch import Watch
+from synth.synthesis.starts.shapes import Population
+from synth.watch import Watch
 
 
 def ended_after(looks):

@@ -6,7 +6,7 @@ from planted import ROBOT
 from standing import SIGMA, standing
 
 from synth.geometry import SweptCircle
-from synth.measurement.calibration import calibrate
+from synth.measurement.markers.calibration import calibrate
 
 LIMITS = ROBOT.joint_limits
 

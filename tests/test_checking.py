@@ -7,14 +7,14 @@ import pytest
 from planted import ROBOT, planted_task
 from standing import BARS, HOLD, SIGMA, seen
 
-from synth.guide.aim import aimed, best_aims, towards
-from synth.guide.check_text import check_text, way_words
-from synth.guide.checking import Verdict, best_joints, check_arm
-from synth.guide.forgiving import loss_at_floor, most_forgiving
-from synth.guide.hand import Hand, errors
-from synth.guide.outlook import outlook
-from synth.guide.settings import best_settings, with_settings
-from synth.guide.trying_on import value_of_trying
+from synth.guide.loop.aim import aimed, best_aims, towards
+from synth.guide.loop.check_text import check_text, way_words
+from synth.guide.loop.checking import Verdict, best_joints, check_arm
+from synth.guide.loop.forgiving import loss_at_floor, most_forgiving
+from synth.guide.loop.hand import Hand, errors
+from synth.guide.loop.outlook import outlook
+from synth.guide.loop.settings import best_settings, with_settings
+from synth.guide.loop.trying_on import value_of_trying
 from synth.measurement import StandingArm, fit_arm
 from synth.synthesis import solve
 

@@ -54,7 +54,7 @@ def test_a_sheet_that_cannot_be_drawn_costs_no_answer(tmp_path, error):
 @pytest.mark.parametrize(
     ("function", "keeps"),
     [
-        ("synth.synthesis.screening.estimated_misses", False),
+        ("synth.synthesis.starts.screening.estimated_misses", False),
         ("synth.synthesis.search.message", True),
         ("synth.guide.text.summary_text", True),
         ("synth.export.files.solution_to_json", None),
@@ -100,7 +100,7 @@ def test_what_was_found_before_the_search_broke_off_is_kept(tmp_path):
 
 def test_a_search_for_releases_that_breaks_off_keeps_the_solution(tmp_path):
     before = (
-        "import synth.synthesis.release as module\n"
+        "import synth.synthesis.blocking as module\n"
         "def fail(*_): raise ZeroDivisionError('by nought')\n"
         "module.limits_of = fail"
     )
@@ -305,7 +305,7 @@ def test_signals_are_as_before_after_a_command():
 
 def test_inspect_has_the_same_net():
     before = (
-        "import synth.measurement.inspection as module\n"
+        "import synth.measurement.distances.inspection as module\n"
         "import synth.measurement\n"
         "def fail(*_, **__): raise ZeroDivisionError('by nought')\n"
         "synth.measurement.inspect = fail"

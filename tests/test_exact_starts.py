@@ -8,8 +8,8 @@ from planted import ROBOT, planted_task
 
 from synth.robot import Interval, RigidLink
 from synth.synthesis import Status, solve
-from synth.synthesis.exact_starts import exact_designs, nearest_to_designs
-from synth.synthesis.population import Population
+from synth.synthesis.starts.exact_arms import exact_designs, nearest_to_designs
+from synth.synthesis.starts.shapes import Population
 from synth.task import PointTarget, Task, Topology
 
 

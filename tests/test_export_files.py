@@ -17,14 +17,14 @@ from pypdf import PdfReader
 
 from synth.errors import SynthError
 from synth.export import draw_sheet, markers_csv, prepare_directory, typesetting, write_files
-from synth.export.missed_page import fill_missed
-from synth.export.obstacle_outlines import clipped, solid_outline
-from synth.export.page import HEIGHT, WIDTH, Page
+from synth.export.sheet.missed_page import fill_missed
+from synth.export.sheet.obstacle_outlines import clipped, solid_outline
+from synth.export.sheet.page import HEIGHT, WIDTH, Page
 from synth.geometry import Box, Capsule
 from synth.guide import make_guide
 from synth.robot import PRESETS, Arm, BasePose, Interval, JointLimits, LinkShape, MalleableLink
 from synth.synthesis import Design, Solution, Status, Timing, verify
-from synth.synthesis.motion import Motion
+from synth.synthesis.wanted.ways import Motion
 from synth.task import Obstacle, PointTarget, Task
 
 ROBOT = PRESETS["malleable-2dof"]

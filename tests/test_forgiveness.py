@@ -8,9 +8,9 @@ from planted import planted_task
 from scipy.spatial.transform import Rotation
 
 from synth.robot import BasePose
-from synth.synthesis.forgiveness import hand_forgiveness, misses_after_a_hand
-from synth.synthesis.population import Population
-from synth.synthesis.postures import Aims, Postures
+from synth.synthesis.starts.postures import Aims, Postures
+from synth.synthesis.starts.shapes import Population
+from synth.synthesis.wanted.forgiveness import hand_forgiveness, misses_after_a_hand
 
 
 def unit_vectors(rng, count):

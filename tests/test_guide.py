@@ -12,16 +12,16 @@ from hypothesis import strategies as st
 from synth.errors import SynthError
 from synth.geometry import Box, Sphere
 from synth.guide import MARKERS, guide_text, instructions, make_guide, solution_text, summary_text
-from synth.guide.guide import SPACING, place
 from synth.guide.instructions import axis_sentence, hold_sentence, link_sentence, tolerance_sentences
+from synth.guide.markers import SPACING, place
 from synth.guide.posture import hold_posture
 from synth.guide.sensitivity import ShapeTolerance, shape_tolerance, tilt_rate
 from synth.guide.text import help_told
 from synth.robot import PRESETS, Arm, ArmBody, BasePose, Interval, JointLimits, LinkShape
-from synth.robot.closest import closest_joints
+from synth.robot.closest_joints import closest_joints
 from synth.robot.kinematics import Kinematics
 from synth.synthesis import Bound, Design, Release, Solution, Status, Timing, showing, verify
-from synth.synthesis.motion import Motion
+from synth.synthesis.wanted.ways import Motion
 from synth.task import DEFAULT_TOLERANCE, Obstacle, PointTarget, Task
 
 ROBOT = PRESETS["malleable-2dof"]

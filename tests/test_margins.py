@@ -9,7 +9,7 @@ from planted import ROBOT, arm_of, planted_task
 
 from synth.robot import Interval, JointLimits, LinkShape
 from synth.synthesis import verify
-from synth.synthesis.margins import Margins, drawn_in, joint_shortfalls
+from synth.synthesis.wanted.margins import Margins, drawn_in, joint_shortfalls
 
 FAR = np.array([math.inf])
 

@@ -8,7 +8,7 @@ from planted import ROBOT
 
 from synth.errors import InputError
 from synth.measurement import Place, marker_named
-from synth.measurement.marker_file import load_points, load_readings
+from synth.measurement.markers.marker_file import load_points, load_readings
 
 GOOD = """marker,x_mm,y_mm,z_mm,joint1_deg,joint2_deg,frame
 P1,0.1,0.2,0.0,180,170,1

@@ -9,12 +9,12 @@ import pytest
 from planted import ROBOT, planted_arm
 
 from synth.errors import GeometryError
+from synth.export.inspection.text import inspection_text
 from synth.geometry import Invariants, SweptCircle, squared_distances
 from synth.measurement import Fit, find_misprint, fit_link, inspect, nearest_realisable, sample_shapes
-from synth.measurement.relaxation import consistent_interval
-from synth.measurement.text import inspection_text
-from synth.task.measured import MeasuredDistances, Measurement, Precision
-from synth.task.measured_file import load_measurements
+from synth.measurement.distances.measured import MeasuredDistances, Measurement, Precision
+from synth.measurement.distances.reading import load_measurements
+from synth.measurement.distances.relaxation import consistent_interval
 
 ROOT = Path(__file__).parents[1]
 MILLIMETRE = Precision.from_rounding(1e-3)

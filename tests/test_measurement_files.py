@@ -12,7 +12,7 @@ from click.testing import CliRunner
 
 from synth.cli import main
 from synth.errors import InputError
-from synth.task.measured_file import parse_measurements
+from synth.measurement.distances.reading import parse_measurements
 
 ROOT = Path(__file__).parents[1]
 HEADER = "synth: 1\nlength_unit: mm\nrobot: malleable-2dof\n"

@@ -9,7 +9,7 @@ from planted_obstacles import SCENES, planted_with_obstacles
 
 from synth.geometry import Box
 from synth.synthesis import motions, verify
-from synth.synthesis.design import Design
+from synth.synthesis.wanted.design import Design
 from synth.task import Obstacle
 
 
@@ -80,7 +80,7 @@ def test_without_obstacles_no_way_around_is_looked_for(monkeypatch):
     def never(*_):
         raise AssertionError
 
-    monkeypatch.setattr("synth.synthesis.motion._shortest", never)
+    monkeypatch.setattr("synth.synthesis.wanted.ways._shortest", never)
     for seed in range(5):
         task, arm = planted_task(seed, 5)
         assert len(motions(task, Design(arm, verify(task, arm)))) == 4

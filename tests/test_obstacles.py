@@ -11,7 +11,7 @@ from planted_obstacles import SCENES, planted_with_obstacles
 from synth.geometry import Box, Sphere
 from synth.robot import Arm, BasePose
 from synth.synthesis import Status, solve, verify
-from synth.synthesis.separation import ROD, separations
+from synth.synthesis.nlp.planes import ROD, separations
 from synth.task import Obstacle
 
 

@@ -8,7 +8,7 @@ from oracle import OracleArm, longest_rod
 from planted import ROBOT, planted_arm
 
 from synth.robot import Arm, ArmBody, BasePose, Interval, LinkShape
-from synth.synthesis.impossibility import longest_rigid_link
+from synth.synthesis.bound.impossibility import longest_rigid_link
 
 CLOSE = 3e-5  # what the package's bounds give away, m
 

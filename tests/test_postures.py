@@ -7,8 +7,8 @@ import pytest
 from planted import ROBOT
 
 from synth.robot import BasePose, Interval, JointLimits
-from synth.synthesis.population import Population
-from synth.synthesis.postures import Aims, Postures, dot
+from synth.synthesis.starts.postures import Aims, Postures, dot
+from synth.synthesis.starts.shapes import Population
 
 NARROW = JointLimits(Interval(-1.0, 2.0), Interval(2.0, 4.0))
 

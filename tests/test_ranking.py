@@ -7,9 +7,9 @@ import pytest
 from planted import planted_task
 
 from synth.synthesis import verify
-from synth.synthesis.design import Design
-from synth.synthesis.figures import judged
-from synth.synthesis.ranking import STEPS, best_of, preferences, preferred
+from synth.synthesis.wanted.design import Design
+from synth.synthesis.wanted.figures import judged
+from synth.synthesis.wanted.ranking import STEPS, best_of, preferences, preferred
 
 GOOD = {
     "ways_missing": 0,

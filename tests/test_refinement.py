@@ -9,12 +9,12 @@ from planted import ROBOT, noisy, planted_task
 
 from synth.geometry import Sphere
 from synth.robot import BasePose, Interval, JointLimits, RigidLink
-from synth.synthesis.category_offsets import category_offsets, category_slopes
-from synth.synthesis.overlaps import overlaps
-from synth.synthesis.population import Population, free_directions, in_equal_arcs, into_limits
-from synth.synthesis.postures import Aims, Postures
-from synth.synthesis.refinement import _curvature_of_norm, cleared, level, refine, relative_weights
-from synth.synthesis.residuals import Residuals
+from synth.synthesis.starts.category_offsets import category_offsets, category_slopes
+from synth.synthesis.starts.overlaps import overlaps
+from synth.synthesis.starts.postures import Aims, Postures
+from synth.synthesis.starts.refinement import _curvature_of_norm, cleared, level, refine, relative_weights
+from synth.synthesis.starts.residuals import Residuals
+from synth.synthesis.starts.shapes import Population, free_directions, in_equal_arcs, into_limits
 from synth.task import Objective, Obstacle, PointTarget, Topology
 
 FREE = replace(

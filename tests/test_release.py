@@ -14,8 +14,8 @@ from synth.guide import help_told, solution_text
 from synth.robot import PRESETS
 from synth.synthesis import explain, release, solve, verify
 from synth.synthesis.solve import follow
-from synth.synthesis.watch import Watch
 from synth.task import PointTarget, Task, load_task
+from synth.watch import Watch
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 

@@ -22,7 +22,7 @@ from synth.robot import (
     pose_miss,
     why_no_link,
 )
-from synth.robot.arc_chains import ArcChains
+from synth.robot.link.arc_chains import ArcChains
 
 AT_ZERO = Interval.fixed(0.0)
 LINK = ROBOT.link

@@ -6,7 +6,7 @@ from bent_links import RADIUS, RATIOS, random_ends, reach_of, two_piece_ends
 from planted import ROBOT, out_of_reach, planted_arm, planted_task
 
 from synth.robot import Interval, LinkReach, MalleableLink
-from synth.synthesis.impossibility import why_impossible
+from synth.synthesis.bound.impossibility import why_impossible
 
 
 @pytest.mark.parametrize("ratio", RATIOS)

@@ -14,8 +14,8 @@ from synth.geometry import realise
 from synth.robot import PRESETS, Arm, LinkShape
 from synth.rounding import Unit, at_least, at_most, rounded_down, rounded_up, told_apart
 from synth.synthesis import verify
-from synth.synthesis.watch import Progress
 from synth.task import PointTarget, Task
+from synth.watch import Progress
 
 values = st.one_of(st.just(0.0), st.floats(1e-9, 1e4), st.floats(-1e4, -1e-9))
 UNITS = {Unit.MM: Decimal(1000), Unit.PERCENT: Decimal(100)}

@@ -6,7 +6,7 @@ from planted import ROBOT, planted_arm
 from standing import standing
 
 from synth.measurement import StandingArm, rotation_matrix
-from synth.measurement.standing_arm import FREEDOMS
+from synth.measurement.markers.standing_arm import FREEDOMS
 
 LIMITS = ROBOT.joint_limits
 

@@ -10,9 +10,9 @@ from planted import ROBOT, feasible, nearly_special_task, out_of_reach, planted_
 
 from synth.robot import BasePose, Interval, MalleableLink, RigidLink
 from synth.synthesis import NotFoundError, Status, solve, verify
-from synth.synthesis.design import Design
-from synth.synthesis.figures import judged
-from synth.synthesis.verdict import message
+from synth.synthesis.message import message
+from synth.synthesis.wanted.design import Design
+from synth.synthesis.wanted.figures import judged
 from synth.task import Objective, PointTarget, Task, Topology
 
 SPECIAL = [Topology.SPHERICAL, Topology.PUMA, Topology.SCARA]

@@ -3,7 +3,7 @@
 import numpy as np
 from planted import planted_task
 
-from synth.synthesis.thinning import thinned
+from synth.synthesis.starts.thinning import thinned
 from synth.task import TargetTable
 
 

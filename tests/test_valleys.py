@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from planted import ROBOT, noisy, planted_task
 
-from synth.synthesis.population import Population
-from synth.synthesis.refinement import Refined
-from synth.synthesis.start_points import starts
-from synth.synthesis.valleys import Valleys
-from synth.synthesis.watch import Watch
+from synth.synthesis.starts.refinement import Refined
+from synth.synthesis.starts.shapes import Population
+from synth.synthesis.starts.start_points import starts
+from synth.synthesis.starts.valleys import Valleys
+from synth.watch import Watch
 
 
 def drawn(seed, count=40):

@@ -27,7 +27,7 @@ from synth import (
     Topology,
 )
 from synth.cli import main
-from synth.task.measured_file import parse_measurements
+from synth.measurement.distances.reading import parse_measurements
 
 ROBOT = PRESETS["malleable-2dof"]
 TARGET = PointTarget("pick", [0.5, 0.1, 0.2])

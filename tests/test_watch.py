@@ -9,11 +9,11 @@ from sampled_shapes import noisy_task
 
 from synth.synthesis import Status, all_targets, solve
 from synth.synthesis.all_targets import verified_in_time
-from synth.synthesis.population import Population
-from synth.synthesis.refinement import refine
+from synth.synthesis.check.verification import verify
 from synth.synthesis.search import Search
-from synth.synthesis.verification import verify
-from synth.synthesis.watch import Watch
+from synth.synthesis.starts.refinement import refine
+from synth.synthesis.starts.shapes import Population
+from synth.watch import Watch
 
 
 class Clock:

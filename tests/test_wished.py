@@ -8,8 +8,8 @@ from planted import ROBOT, planted_task
 
 from synth.robot import Interval, JointLimits
 from synth.synthesis import solve, verify
-from synth.synthesis.margins import Margins
-from synth.synthesis.wished import wished
+from synth.synthesis.wanted.margins import Margins
+from synth.synthesis.wanted.wanted_shapes import wished
 from synth.task import PointTarget, Task
 
 

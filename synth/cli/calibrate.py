@@ -8,12 +8,10 @@ from typing import TYPE_CHECKING
 
 from synth.cli.exit_codes import ExitCode
 from synth.cli.say import say
-from synth.export.calibration_json import calibration_to_json
-from synth.measurement import StandingArm, sigma_of
-from synth.measurement.calibration import calibrate
-from synth.measurement.marker_file import load_points
+from synth.export import calibration_to_json
+from synth.measurement import StandingArm, calibrate, load_points, sigma_of
 from synth.rounding import rounded_up
-from synth.task.solution_file import load_shapes
+from synth.task import load_shapes
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -7,17 +7,11 @@ from typing import TYPE_CHECKING
 
 from synth.cli.exit_codes import ExitCode
 from synth.cli.say import say
-from synth.export.check_json import check_to_json, refusal_to_json
-from synth.export.files import json_bytes, write_all
-from synth.guide.check_text import check_text
-from synth.guide.checking import Verdict, check_arm
-from synth.guide.posture import hold_posture
-from synth.guide.settings import best_settings
-from synth.measurement import StandingArm, examine, sigma_of
-from synth.measurement.marker_file import load_readings
-from synth.synthesis import verify
-from synth.synthesis.design import Design
-from synth.task.solution_file import load_shapes
+from synth.export import check_to_json, json_bytes, refusal_to_json, write_all
+from synth.guide import Verdict, best_settings, check_arm, check_text, hold_posture
+from synth.measurement import StandingArm, examine, load_readings, sigma_of
+from synth.synthesis import Design, verify
+from synth.task import load_shapes
 
 if TYPE_CHECKING:
     from pathlib import Path

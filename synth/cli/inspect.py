@@ -32,10 +32,8 @@ def inspect_file(
     Returns:
         The exit code.
     """
-    from synth.export import prepare_directory
-    from synth.export.inspection_files import file_names
-    from synth.measurement import inspect
-    from synth.task.measured_file import load_measurements
+    from synth.export import file_names, prepare_directory
+    from synth.measurement import inspect, load_measurements
 
     measurements = load_measurements(file)
     if output is not None:
@@ -61,8 +59,7 @@ def inspect_file(
 
 
 def _text(inspections: Sequence[Inspection], form: str) -> str:
-    from synth.export.inspection_json import inspections_to_json
-    from synth.measurement.text import inspection_text, inspections_markdown
+    from synth.export import inspection_text, inspections_markdown, inspections_to_json
 
     if form == "json":
         return json.dumps(inspections_to_json(inspections), indent=2, allow_nan=False)
@@ -73,7 +70,7 @@ def _text(inspections: Sequence[Inspection], form: str) -> str:
 
 def _write(inspections: Sequence[Inspection], output: Path) -> bool:
     """Write the files, and say which; whether all of them are there."""
-    from synth.export.inspection_files import write_inspections
+    from synth.export import write_inspections
 
     written = write_inspections(inspections, output)
     for path in written.paths:

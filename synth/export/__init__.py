@@ -1,11 +1,22 @@
 """Solutions as files: for programs (JSON), for spreadsheets (CSV), and to be held in a hand (PDF)."""
 
+from synth.export.calibration_json import calibration_to_json
+from synth.export.check_json import check_to_json, refusal_to_json
 from synth.export.files import (
     SOLUTION_FILES,
+    json_bytes,
     json_text,
     prepare_directory,
+    write_all,
     write_files,
     write_what_can_be,
+)
+from synth.export.inspection import (
+    file_names,
+    inspection_text,
+    inspections_markdown,
+    inspections_to_json,
+    write_inspections,
 )
 from synth.export.markers import markers_csv
 from synth.export.sheet import draw_sheet
@@ -13,11 +24,21 @@ from synth.export.solution_json import solution_to_json
 
 __all__ = [
     "SOLUTION_FILES",
+    "calibration_to_json",
+    "check_to_json",
     "draw_sheet",
+    "file_names",
+    "inspection_text",
+    "inspections_markdown",
+    "inspections_to_json",
+    "json_bytes",
     "json_text",
     "markers_csv",
     "prepare_directory",
+    "refusal_to_json",
     "solution_to_json",
+    "write_all",
     "write_files",
+    "write_inspections",
     "write_what_can_be",
 ]

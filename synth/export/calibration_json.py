@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from synth.export.plain import plain
+from synth.export.json_data import plain
 from synth.geometry import squared_distances
-from synth.guide.swept_targets import swept_targets
+from synth.guide import swept_targets
 from synth.version import __version__
 
 if TYPE_CHECKING:
-    from synth.measurement.calibration import Calibration
+    from synth.measurement import Calibration
     from synth.task import Task
 
 SCHEMA = "synth.calibration/1"

@@ -6,14 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from synth.export.plain import plain
-from synth.guide.check_text import correction_sentence, headline_sentence
-from synth.guide.checking import Verdict
+from synth.export.json_data import plain
+from synth.guide import Verdict, correction_sentence, headline_sentence
 from synth.version import __version__
 
 if TYPE_CHECKING:
-    from synth.guide.checking import Check, Correction
-    from synth.guide.settings import Settings
+    from synth.guide import Check, Correction, Settings
     from synth.measurement import Examination
 
 SCHEMA = "synth.check/1"

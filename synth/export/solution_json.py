@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from synth.checks import refuse_unless
-from synth.export.plain import plain
+from synth.export.json_data import plain
 from synth.export.task_json import arcs_to_json, task_to_json
 from synth.guide import MARKERS, make_guide
-from synth.synthesis import Bound, Solution
-from synth.synthesis.solution import target_results, worst_targets
+from synth.synthesis import Bound, Solution, target_results, worst_targets
 from synth.version import __version__
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ import numpy as np
 
 from synth.arrays import FloatArray, frozen
 from synth.errors import GeometryError
-from synth.geometry.closest import closest_angles
+from synth.geometry.closest_angles import closest_angles
 from synth.geometry.distances import ArmDistances, realise, squared_distances
 from synth.geometry.gamma import WorkspaceSurface
 

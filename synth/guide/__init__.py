@@ -1,25 +1,63 @@
 """The guide: from a solution to what a person does with the robot's link."""
 
-from synth.guide.guide import LINK_END, MARKERS, Guide, Placement, make_guide
 from synth.guide.instructions import base_sentence, instructions
-from synth.guide.posture import HoldPosture
+from synth.guide.loop import (
+    Check,
+    Correction,
+    Settings,
+    Verdict,
+    best_settings,
+    check_arm,
+    check_text,
+    correction_sentence,
+    headline_sentence,
+    swept_targets,
+)
+from synth.guide.markers import LINK_END, MARKERS, Guide, Placement, make_guide
+from synth.guide.posture import HoldPosture, hold_posture
 from synth.guide.sensitivity import ShapeTolerance
-from synth.guide.text import guide_text, help_told, proof_sentence, reasons_told, solution_text, summary_text
+from synth.guide.text import (
+    BULLET,
+    FOUND,
+    MISSED,
+    clearance_told,
+    guide_text,
+    help_told,
+    proof_sentence,
+    reasons_told,
+    solution_text,
+    summary_text,
+)
 
 __all__ = [
+    "BULLET",
+    "FOUND",
     "LINK_END",
     "MARKERS",
+    "MISSED",
+    "Check",
+    "Correction",
     "Guide",
     "HoldPosture",
     "Placement",
+    "Settings",
     "ShapeTolerance",
+    "Verdict",
     "base_sentence",
+    "best_settings",
+    "check_arm",
+    "check_text",
+    "clearance_told",
+    "correction_sentence",
     "guide_text",
+    "headline_sentence",
     "help_told",
+    "hold_posture",
     "instructions",
     "make_guide",
     "proof_sentence",
     "reasons_told",
     "solution_text",
     "summary_text",
+    "swept_targets",
 ]

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 from synth.guide.sensitivity import LARGEST_TILT
 from synth.rounding import Unit, rounded_down, rounded_up
-from synth.synthesis.forgiveness import HAND_PLACES, HAND_TURNS
+from synth.synthesis import HAND_PLACES, HAND_TURNS
 
 if TYPE_CHECKING:
-    from synth.guide.guide import Guide
+    from synth.guide.markers import Guide
     from synth.robot import BasePose, LinkShape
     from synth.synthesis import Forgiveness
 

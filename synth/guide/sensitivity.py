@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.robot import BasePose
-from synth.synthesis.displaced import misses_displaced, rotations
+from synth.synthesis import misses_displaced, rotations
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.robot import Arm
-    from synth.synthesis.design import Design
+    from synth.synthesis import Design
     from synth.task import Task
 
 # A miss below this has no direction but that of rounding: the surface's normal takes its place.

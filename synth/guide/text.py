@@ -10,19 +10,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.guide.guide import SPACING, make_guide
 from synth.guide.instructions import base_sentence, hand_sentence, instructions, link_sentence
+from synth.guide.markers import SPACING, make_guide
 from synth.robot import MOST_CLEARANCE
 from synth.rounding import Unit, rounded_down, rounded_up
-from synth.synthesis import Status
-from synth.synthesis.solution import target_results, worst_targets
-from synth.synthesis.verdict import ending
+from synth.synthesis import Status, ending, target_results, worst_targets
 from synth.task import DEFAULT_TOLERANCE
 
 if TYPE_CHECKING:
-    from synth.guide.guide import Guide
-    from synth.synthesis.design import Design
-    from synth.synthesis.solution import Solution
+    from synth.guide.markers import Guide
+    from synth.synthesis import Design, Solution
     from synth.task import Task
 
 FOUND, MISSED, BULLET = "✓", "✗", "•"

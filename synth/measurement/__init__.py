@@ -13,24 +13,55 @@ arm that stands there, with its covariance.
     Readings -> Examination -> ArmFit
 """
 
-from synth.measurement.arm_fit import ArmFit, fit_arm, marker_positions
-from synth.measurement.examination import Examination, examine
-from synth.measurement.inspection import Inspection, inspect
-from synth.measurement.link_fit import LinkFit, fit_link
-from synth.measurement.markers import MARKER_ERROR, Marker, Place, Readings, marker_named, sigma_of
-from synth.measurement.misprint import Misprint, Suspect, find_misprint
-from synth.measurement.nearest import Fit, Nearest, nearest_realisable
-from synth.measurement.sampling import Samples, Spread, sample_shapes
-from synth.measurement.standing_arm import StandingArm, rotation_matrix
+from synth.measurement.distances import (
+    Fit,
+    Inspection,
+    LinkFit,
+    Measurement,
+    Misprint,
+    Nearest,
+    Samples,
+    Spread,
+    Suspect,
+    find_misprint,
+    fit_link,
+    inspect,
+    load_measurements,
+    nearest_realisable,
+    sample_shapes,
+)
+from synth.measurement.markers import (
+    MARKER_ERROR,
+    ArmFit,
+    Calibration,
+    Examination,
+    Marker,
+    Place,
+    Readings,
+    StandingArm,
+    calibrate,
+    cross,
+    examine,
+    fit_arm,
+    load_points,
+    load_readings,
+    marker_named,
+    marker_positions,
+    onto_vertical,
+    rotation_matrix,
+    sigma_of,
+)
 
 __all__ = [
     "MARKER_ERROR",
     "ArmFit",
+    "Calibration",
     "Examination",
     "Fit",
     "Inspection",
     "LinkFit",
     "Marker",
+    "Measurement",
     "Misprint",
     "Nearest",
     "Place",
@@ -39,14 +70,20 @@ __all__ = [
     "Spread",
     "StandingArm",
     "Suspect",
+    "calibrate",
+    "cross",
     "examine",
     "find_misprint",
     "fit_arm",
     "fit_link",
     "inspect",
+    "load_measurements",
+    "load_points",
+    "load_readings",
     "marker_named",
     "marker_positions",
     "nearest_realisable",
+    "onto_vertical",
     "rotation_matrix",
     "sample_shapes",
     "sigma_of",

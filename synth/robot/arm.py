@@ -18,10 +18,10 @@ from synth.geometry import (
     classify,
     squared_distances,
 )
-from synth.robot.base import BasePose
-from synth.robot.closest import closest_joints
+from synth.robot.base_pose import BasePose
+from synth.robot.closest_joints import closest_joints
+from synth.robot.hardware import into_turn
 from synth.robot.kinematics import Kinematics
-from synth.robot.turn import into_turn
 
 _SAME_BRANCH = 1e-5  # rad; branches nearer than this are one, met twice
 

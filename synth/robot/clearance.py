@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.geometry import least_values
-from synth.robot.turn import turned
+from synth.robot.hardware import turned
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

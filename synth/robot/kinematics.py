@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.robot.turn import into_turn, turned
+from synth.robot.hardware import into_turn, turned
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from synth.arrays import FloatArray
-    from synth.robot.interval import Interval
+    from synth.robot.hardware import Interval
 
 _NEWTON_STEPS = 6
 

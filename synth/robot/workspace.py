@@ -11,9 +11,7 @@ import numpy as np
 
 from synth.arrays import FloatArray, frozen
 from synth.geometry import critical_angles, sampling_angles
-from synth.robot.hardware import JointLimits
-from synth.robot.interval import Interval
-from synth.robot.turn import into_turn
+from synth.robot.hardware import Interval, JointLimits, into_turn
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

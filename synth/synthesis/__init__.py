@@ -1,17 +1,36 @@
 """The synthesis: screen, polish, verify; `solve` is its one verb."""
 
+from synth.synthesis.blocking import explain
 from synth.synthesis.bound import Bound
-from synth.synthesis.design import Design
-from synth.synthesis.forgiveness import Forgiveness, hand_forgiveness
-from synth.synthesis.motion import MOST_MOTIONS, Motion, motions
-from synth.synthesis.release import explain
-from synth.synthesis.solution import NotFoundError, Release, Solution, Status, TargetResult
+from synth.synthesis.check import Verification, Violation, verify
+from synth.synthesis.message import ending, showing
+from synth.synthesis.solution import (
+    NotFoundError,
+    Release,
+    Solution,
+    Status,
+    TargetResult,
+    target_results,
+    worst_targets,
+)
 from synth.synthesis.solve import solve
-from synth.synthesis.verdict import showing
-from synth.synthesis.verification import Verification, Violation, verify
-from synth.synthesis.watch import Progress, Timing
+from synth.synthesis.wanted import (
+    HAND_PLACES,
+    HAND_TURNS,
+    MOST_MOTIONS,
+    Design,
+    Forgiveness,
+    Motion,
+    hand_forgiveness,
+    misses_displaced,
+    motions,
+    rotations,
+)
+from synth.watch import Progress, Timing
 
 __all__ = [
+    "HAND_PLACES",
+    "HAND_TURNS",
     "MOST_MOTIONS",
     "Bound",
     "Design",
@@ -26,10 +45,15 @@ __all__ = [
     "Timing",
     "Verification",
     "Violation",
+    "ending",
     "explain",
     "hand_forgiveness",
+    "misses_displaced",
     "motions",
+    "rotations",
     "showing",
     "solve",
+    "target_results",
     "verify",
+    "worst_targets",
 ]

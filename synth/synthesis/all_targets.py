@@ -7,19 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.design import Design
+from synth.synthesis.check import verify
 from synth.synthesis.many_targets import levelled, ranked
-from synth.synthesis.ranking import best_of
-from synth.synthesis.turned_about_axis_1 import improved, random_part
-from synth.synthesis.verification import verify
+from synth.synthesis.starts import improved, random_part
+from synth.synthesis.wanted import Design, best_of
 from synth.task import Objective
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from synth.robot import Arm
-    from synth.synthesis.watch import Watch
     from synth.task import Task
+    from synth.watch import Watch
 
 # Targets of all shapes together that are looked at where the search knew only a part of them.
 _VERIFIED_AT_MOST = 20_000

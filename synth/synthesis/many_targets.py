@@ -13,18 +13,24 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.population import Population
-from synth.synthesis.refinement import Refined, level
-from synth.synthesis.thinning import thinned
-from synth.synthesis.turned_about_axis_1 import SAMPLE, as_it_is_and_turned, random_part, relative_misses
+from synth.synthesis.starts import (
+    SAMPLE,
+    Population,
+    Refined,
+    as_it_is_and_turned,
+    level,
+    random_part,
+    relative_misses,
+    thinned,
+)
 from synth.task import Objective
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from synth.robot import Arm
-    from synth.synthesis.watch import Watch
     from synth.task import Task
+    from synth.watch import Watch
 
 # That the nonlinear program knows all at once.
 _MOST_TARGETS = {Objective.LEAST_SQUARES: 100, Objective.MINIMAX: 40}

@@ -8,13 +8,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from synth.errors import SolverError
-from synth.synthesis.design import Design
-from synth.synthesis.figures import judged
-from synth.synthesis.nlp import Structure, SynthesisNlp, shared_nlp
-from synth.synthesis.population import ARCS
-from synth.synthesis.ranking import objective
-from synth.synthesis.separation import separations
-from synth.synthesis.verification import verify
+from synth.synthesis.check import verify
+from synth.synthesis.nlp import Structure, SynthesisNlp, separations, shared_nlp
+from synth.synthesis.starts import ARCS
+from synth.synthesis.wanted import Design, judged, objective
 from synth.task import Objective
 
 if TYPE_CHECKING:
@@ -22,10 +19,10 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.robot import Arm
-    from synth.synthesis.separation import Separation
-    from synth.synthesis.start_points import Start
-    from synth.synthesis.watch import Watch
+    from synth.synthesis.nlp import Separation
+    from synth.synthesis.starts import Start
     from synth.task import Task
+    from synth.watch import Watch
 
 # How often planes before obstacles are taken anew where the solver ended, until a shape is found.
 _PLANES_ANEW = 5

@@ -14,25 +14,22 @@ import numpy as np
 from synth.errors import in_a_line
 from synth.robot import ANYWHERE, Interval, links_to_poses
 from synth.synthesis.all_targets import WholeTask, for_all_targets, verified_in_time
-from synth.synthesis.certificate import Certifier
-from synth.synthesis.design import Design
-from synth.synthesis.impossibility import why_impossible
+from synth.synthesis.bound import why_impossible
+from synth.synthesis.check import verify
+from synth.synthesis.message import message, why_no_better
 from synth.synthesis.polishing import Polishing
-from synth.synthesis.population import in_equal_arcs
-from synth.synthesis.ranking import best_of, leaves_no_wish, objective
+from synth.synthesis.proving import Certifier
 from synth.synthesis.solution import Solution, Status
-from synth.synthesis.start_points import Start, starts
-from synth.synthesis.verdict import message, why_no_better
-from synth.synthesis.verification import verify
-from synth.synthesis.wished import wished
+from synth.synthesis.starts import Start, in_equal_arcs, starts
+from synth.synthesis.wanted import Design, best_of, leaves_no_wish, objective, wished
 from synth.task import Objective
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from synth.synthesis.bound import Bound
-    from synth.synthesis.watch import Watch
     from synth.task import Task
+    from synth.watch import Watch
 
 _STARTS_AT_MOST = 48
 _STARTS_WHEN_IMPOSSIBLE = 12  # for a good best effort

@@ -10,16 +10,16 @@ import numpy as np
 from synth.arrays import FloatArray, frozen
 from synth.errors import SynthError
 from synth.sentences import SentenceEnum
-from synth.synthesis.room import clear_of_everything
+from synth.synthesis.check import clear_of_everything
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.robot import Arm
     from synth.synthesis.bound import Bound
-    from synth.synthesis.design import Design
-    from synth.synthesis.watch import Timing
+    from synth.synthesis.wanted import Design
     from synth.task import Task
+    from synth.watch import Timing
 
 
 class Status(SentenceEnum):

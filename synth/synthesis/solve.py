@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 from synth.synthesis.arguments import checked_task
 from synth.synthesis.many_targets import part_of
 from synth.synthesis.search import ALTERNATIVES, Search
-from synth.synthesis.watch import Watch
+from synth.watch import Watch
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Callable, Mapping, Sequence
 
-    from synth.synthesis.design import Design
     from synth.synthesis.solution import Solution
-    from synth.synthesis.watch import Progress
+    from synth.synthesis.wanted import Design
     from synth.task import Task
+    from synth.watch import Progress
 
 
 def solve(

@@ -1,22 +1,55 @@
 """The task: what is asked, and how it is read from a file."""
 
 from synth.robot import BasePose
+from synth.task.hardware_distances import off_the_hardware
 from synth.task.model import DEFAULT_TOLERANCE, Objective, Obstacle, PointTarget, TargetTable, Task, Topology
-from synth.task.reading import as_task, load_robot, load_task, parse_task
-from synth.task.schema import task_schema
+from synth.task.reading import as_path, as_task, load_robot, load_task, named_robot, parse_task, robot_within
+from synth.task.schema import (
+    LARGEST,
+    MAPPING,
+    TEXT,
+    LengthUnit,
+    Name,
+    Position,
+    Positive,
+    RobotEntry,
+    Strict,
+    absent,
+    task_schema,
+)
+from synth.task.sizes import PER_METRE
+from synth.task.solution_file import load_shapes
+from synth.task.wording import validate
 
 __all__ = [
     "DEFAULT_TOLERANCE",
+    "LARGEST",
+    "MAPPING",
+    "PER_METRE",
+    "TEXT",
     "BasePose",
+    "LengthUnit",
+    "Name",
     "Objective",
     "Obstacle",
     "PointTarget",
+    "Position",
+    "Positive",
+    "RobotEntry",
+    "Strict",
     "TargetTable",
     "Task",
     "Topology",
+    "absent",
+    "as_path",
     "as_task",
     "load_robot",
+    "load_shapes",
     "load_task",
+    "named_robot",
+    "off_the_hardware",
     "parse_task",
+    "robot_within",
     "task_schema",
+    "validate",
 ]

@@ -21,7 +21,7 @@ from pydantic import (
 )
 
 from synth.checks import told_apart, wrong_name
-from synth.robot.hardware import no_triangle
+from synth.robot import no_triangle
 from synth.task.model import Objective, Topology
 
 ONE, RANGE, TEXT, MAPPING = "<one>", "<range>", "<text>", "<mapping>"  # tags of unions, never keys

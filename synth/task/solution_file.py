@@ -14,6 +14,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from synth.errors import InputError, Mistake
+from synth.files import key_text
 from synth.geometry import Box, Capsule, Sphere
 from synth.robot import (
     Arm,
@@ -25,7 +26,6 @@ from synth.robot import (
     RigidLink,
     Robot,
 )
-from synth.task.document import key_text
 from synth.task.model import Objective, Obstacle, PointTarget, Task, Topology
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, get_args
 from pydantic import BaseModel, ValidationError
 
 from synth.checks import described, did_you_mean, guesses
-from synth.task.document import KeyPath, Refused, key_text
+from synth.files import KeyPath, Refused, key_text
 from synth.task.schema import MAPPING, ONE, RANGE, SURFACES_TO_COME, TEXT
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from pydantic_core import ErrorDetails
 
-    from synth.task.document import Document
+    from synth.files import Document
 
 _M = TypeVar("_M", bound=BaseModel)
 

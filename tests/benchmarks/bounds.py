@@ -21,8 +21,8 @@ from planted import ROBOT
 from sampled_shapes import contradictions, noisy_task, shapes_about, task_about
 
 from synth.synthesis import Design, solve, verify
-from synth.synthesis.certificate import Certifier
-from synth.synthesis.watch import Watch
+from synth.synthesis.proving import Certifier
+from synth.watch import Watch
 
 GOALS = ((10.0, 0.5e-3), (60.0, 0.1e-3))  # s, m
 ROUNDING = 1e-9  # m

@@ -37,9 +37,9 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from planted import ROBOT, planted_task
 
-from synth.guide.checking import Verdict, best_joints, check_arm
-from synth.guide.forgiving import most_forgiving
-from synth.guide.settings import best_settings, with_settings
+from synth.guide.loop.checking import Verdict, best_joints, check_arm
+from synth.guide.loop.forgiving import most_forgiving
+from synth.guide.loop.settings import best_settings, with_settings
 from synth.measurement import (
     MARKER_ERROR,
     Readings,

@@ -12,8 +12,8 @@ import numpy as np
 from compiled_link import UNKNOWNS, constants
 from compiled_residuals import jacobian, residuals
 
-from synth.synthesis.population import Population, into_limits
-from synth.synthesis.verification import verify
+from synth.synthesis.check.verification import verify
+from synth.synthesis.starts.shapes import Population, into_limits
 from synth.task import PointTarget, Task
 
 if TYPE_CHECKING:

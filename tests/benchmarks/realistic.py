@@ -24,7 +24,7 @@ import numpy as np
 from synth.geometry import Box
 from synth.robot import PRESETS, Interval, JointLimits
 from synth.synthesis import motions, solve
-from synth.synthesis.forgiveness import hand_forgiveness
+from synth.synthesis.wanted.forgiveness import hand_forgiveness
 from synth.task import Obstacle, PointTarget, Task
 
 if TYPE_CHECKING:

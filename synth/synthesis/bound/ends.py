@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.robot import ANYWHERE, ArcChains, turned
-from synth.robot.chain_steps import improved
+from synth.robot import ANYWHERE, ArcChains, improved, turned
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -10,10 +10,10 @@ import numpy as np
 
 from synth.rounding import Unit, at_least, rounded_up
 from synth.synthesis.bound.boxes import Boxes
+from synth.synthesis.bound.impossibility import longest_rigid_link
 from synth.synthesis.bound.limits import SLACK
 from synth.synthesis.bound.misses import MissBounds
 from synth.synthesis.bound.promising import Promising
-from synth.synthesis.impossibility import longest_rigid_link
 from synth.task import Topology
 
 if TYPE_CHECKING:
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.synthesis.bound.ends import LinkEnd
-    from synth.synthesis.watch import Watch
     from synth.task import Task
+    from synth.watch import Watch
 
 # Taken off every bound, m for each metre of the robot's size: see "Rounding" in docs/bound.md.
 _ROUNDING = 1e-9

@@ -5,7 +5,8 @@ constraints with their bounds; `arm`, the robot in expressions; `ipopt`, the sol
 the values of the unknowns; `program`, which puts them together and says what is solved.
 """
 
+from synth.synthesis.nlp.planes import Separation, separations
 from synth.synthesis.nlp.program import SynthesisNlp, shared_nlp
 from synth.synthesis.nlp.structure import Structure
 
-__all__ = ["Structure", "SynthesisNlp", "shared_nlp"]
+__all__ = ["Separation", "Structure", "SynthesisNlp", "separations", "shared_nlp"]

@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 
 import casadi as ca
 
-from synth.synthesis.separation import COLUMN, PIECES, ROD
+from synth.synthesis.nlp.planes import COLUMN, PIECES, ROD
 from synth.task import Topology
 
 if TYPE_CHECKING:
     from synth.synthesis.nlp.blocks import Constraints, Unknowns
+    from synth.synthesis.nlp.planes import Separation
     from synth.synthesis.nlp.structure import Structure
-    from synth.synthesis.separation import Separation
 
 # Curvature 1e-5 / m is straight; it keeps |k| differentiable at zero.
 _STRAIGHT = 1e-10

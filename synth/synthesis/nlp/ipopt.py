@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.synthesis.nlp.blocks import Constraints, Unknowns
-    from synth.synthesis.watch import Watch
+    from synth.watch import Watch
 
 _OPTIONS = {
     "print_time": False,

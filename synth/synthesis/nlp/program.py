@@ -44,10 +44,10 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.robot import Arm
+    from synth.synthesis.nlp.planes import Separation
     from synth.synthesis.nlp.structure import Structure
-    from synth.synthesis.separation import Separation
-    from synth.synthesis.watch import Watch
     from synth.task import Task
+    from synth.watch import Watch
 
 # The weight of r * (bending energy) against squared misses in units of the tolerance. It shifts a
 # miss by about 1e-6 of the tolerance: invisible, and yet it settles every free direction.

@@ -1,0 +1,74 @@
+"""The sheet of a task that is not met, above its drawings: what is missed, why, and what would help."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from synth.export.sheet.page import MARGIN, WIDTH
+from synth.export.sheet.target_table import target_table
+from synth.export.sheet.typesetting import width
+from synth.guide import help_told, proof_sentence, reasons_told
+from synth.synthesis import Status
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from synth.export.sheet.page import Page
+    from synth.synthesis import Solution
+
+# Millimetres on the page.
+_BANNER, _BODY = 21.0, 37.0
+_BANNER_SIZE = 12.0  # pt, at most
+_PITCH = 3.6
+_MOST_LINES = 3  # of one reason
+_MOST_REASONS, _MOST_RELEASES = 5, 5
+
+
+def fill_missed(page: Page, solution: Solution) -> float:
+    """Write all but the drawings; return how far down it goes, mm."""
+    _banner(page, solution)
+    y = _list(page, _BODY, "Why", _why(solution))
+    y = _list(page, y, "What would help", _help(solution))
+    y = target_table(page, MARGIN, y + 1.0, solution)
+    if not solution.designs:
+        page.text(MARGIN, y + 1.0, "There is no shape to bend the link to.", 9.5, weight="bold")
+        y += 4.0
+    return y + 6.0
+
+
+def _banner(page: Page, solution: Solution) -> None:
+    word = "IMPOSSIBLE" if solution.status is Status.PROVEN_IMPOSSIBLE else "NOT FOUND"
+    told = f"{word}: {solution.status.sentence}"
+    page.band(MARGIN, _BANNER, WIDTH - 2 * MARGIN, 9.0, "black")
+    size = _BANNER_SIZE * min(1.0, (WIDTH - 2 * MARGIN - 6.0) / width(told, _BANNER_SIZE, bold=True))
+    page.text(MARGIN + 3.0, _BANNER + 6.2, told, size, color="white", weight="bold")
+
+
+def _why(solution: Solution) -> list[str]:
+    told = reasons_told(solution, _MOST_REASONS)
+    proof = proof_sentence(solution)
+    return [*told, proof] if proof else told
+
+
+def _help(solution: Solution) -> list[str]:
+    """Return the releases, of many the first, and what else is to be said."""
+    few = replace(solution, releases=solution.releases[:_MOST_RELEASES])
+    return help_told(few)
+
+
+def _list(page: Page, y: float, heading: str, lines: Sequence[str]) -> float:
+    """Write a heading and a list; return where the next line goes. Of a long entry the first lines."""
+    if not lines:
+        return y
+    page.text(MARGIN, y, heading, 9.5, weight="bold")
+    y += 4.6
+    for line in lines:
+        page.text(MARGIN, y, "•", 7.0)
+        y = (
+            page.paragraph(
+                MARGIN + 3.0, y, line, WIDTH - 2 * MARGIN - 3.0, most=_MOST_LINES, pitch=_PITCH, size=7.0
+            )
+            + 0.3
+        )
+    return y + 2.6

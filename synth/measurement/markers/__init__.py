@@ -1,0 +1,30 @@
+"""Measured markers: where an arm stands, what it is, and how well its errors are known."""
+
+from synth.measurement.markers.arm_fit import ArmFit, fit_arm, marker_positions
+from synth.measurement.markers.calibration import Calibration, calibrate
+from synth.measurement.markers.examination import Examination, examine
+from synth.measurement.markers.marker_file import load_points, load_readings
+from synth.measurement.markers.markers import MARKER_ERROR, Marker, Place, Readings, marker_named, sigma_of
+from synth.measurement.markers.standing_arm import StandingArm, cross, onto_vertical, rotation_matrix
+
+__all__ = [
+    "MARKER_ERROR",
+    "ArmFit",
+    "Calibration",
+    "Examination",
+    "Marker",
+    "Place",
+    "Readings",
+    "StandingArm",
+    "calibrate",
+    "cross",
+    "examine",
+    "fit_arm",
+    "load_points",
+    "load_readings",
+    "marker_named",
+    "marker_positions",
+    "onto_vertical",
+    "rotation_matrix",
+    "sigma_of",
+]

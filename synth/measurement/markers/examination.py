@@ -1,0 +1,248 @@
+"""Are the markers to be believed? Wrong units, frames and names are refused, bad markers left out.
+
+What is known of any arm decides: distances on its axes and to P5, that axis 1 is the z axis of its base, the
+sense in
+which joints turn. Where a mirrored or turned frame leaves all that as it is, the arm that was wanted decides.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.measurement.markers.arm_fit import ArmFit, fit_arm, marker_positions
+from synth.measurement.markers.markers import Place, Readings
+from synth.rounding import rounded_up
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from synth.arrays import FloatArray
+    from synth.measurement.markers.standing_arm import StandingArm
+    from synth.robot import Robot
+
+    _Fitter = Callable[[Readings], ArmFit]
+
+_IMPLAUSIBLE, _PLAUSIBLE = 1e-3, 1e-2
+_MOST_REJECTED = 2
+_FACTORS = {"1000 times too large": 1e3, "1000 times too small": 1e-3, "10 times too large": 10.0,
+            "10 times too small": 0.1, "in inches, not millimetres": 1 / 25.4}  # fmt: skip
+_SHORTEST = 0.02  # m; distances below tell nothing of a unit
+_UPRIGHT, _AT_ORIGIN = np.radians(20.0), 0.05
+_FAR, _NEAR = 0.07, 0.06  # m, from the arm that was wanted; a hand places a link to some 15 mm
+_FRAMES: dict[str, FloatArray] = {
+    "mirrored: x and -x are exchanged": np.diag([-1.0, 1.0, 1.0]),
+    "mirrored: y and -y are exchanged": np.diag([1.0, -1.0, 1.0]),
+    "mirrored: x and y are exchanged": np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]),
+    "upside down": np.diag([1.0, -1.0, -1.0]),
+    "one with y up, not z": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]),
+    "one with y up, not z, and mirrored": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]]),
+    "one with x up, not z": np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Examination:
+    """What is to be believed of readings.
+
+    Attributes:
+        fit: The arm that stands there; None if the readings are refused.
+        used: The readings that it was fitted to.
+        rejected: Markers left out, each with the reason.
+        refusal: Why the readings are refused, as a sentence, or empty.
+    """
+
+    fit: ArmFit | None
+    used: Readings
+    rejected: tuple[tuple[str, str], ...] = ()
+    refusal: str = ""
+
+
+def examine(
+    readings: Readings, wanted: StandingArm, robot: Robot, sigma: float, *, base_calibrated: bool
+) -> Examination:
+    """Return what is to be believed of readings.
+
+    Args:
+        readings: Where markers were seen.
+        wanted: The arm that should stand there.
+        robot: The hardware.
+        sigma: Standard deviation of each coordinate of a marker, m.
+        base_calibrated: Whether axis 1 is known to be the z axis of the frame.
+    """
+    lost = [(name, "it is on the link and says nothing of the axes")
+            for name in dict.fromkeys(readings.names[k] for k in readings.at(Place.LINK))]  # fmt: skip
+    used = readings.take([k for k, marker in enumerate(readings.markers) if marker.place is not Place.LINK])
+    refusal = (
+        _missing(used, base_calibrated=base_calibrated)
+        or _wrong_scale(used, wanted, robot)
+        or _wrong_base(used)
+    )
+    if refusal:
+        return Examination(None, used, tuple(lost), refusal)
+
+    def fitted(some: Readings) -> ArmFit:
+        return fit_arm(some, wanted, robot.tip_offset, sigma, base_calibrated=base_calibrated)
+
+    fit = fitted(used)
+    while fit.plausibility < _IMPLAUSIBLE:
+        if refusal := _frame_that_fits(used, fitted) or _swap_that_fits(used, fitted):
+            return Examination(None, used, tuple(lost), refusal)
+        culprit = (
+            _culprit(used, fitted, robot.tip_offset)
+            if len(lost) < _MOST_REJECTED + readings.at(Place.LINK).size
+            else None
+        )
+        if culprit is None:
+            worst = float(np.linalg.norm(fit.residuals, axis=1).max())
+            return Examination(
+                None, used, tuple(lost),
+                f"the markers contradict each other by up to {rounded_up(worst)} mm, and which of them is "
+                "wrong cannot be told",
+            )  # fmt: skip
+        name, off = culprit
+        lost.append((name, f"it is {1e3 * off:.1f} mm from where the other markers say that it must be"))
+        used = used.without(name)
+        fit = fitted(used)
+    if refusal := _frame_nearer(fit, wanted):
+        return Examination(None, used, tuple(lost), refusal)
+    return Examination(fit, used, tuple(lost))
+
+
+def _missing(readings: Readings, *, base_calibrated: bool) -> str:
+    on_axis_2 = {readings.offsets[k] for k in readings.at(Place.AXIS_2)}
+    if len(on_axis_2) < 2:
+        return (
+            "axis 2 is not shown: two markers on it are needed, P3 and P4 or a bar such as A2:-150 and A2:150"
+        )
+    on_axis_1 = {readings.offsets[k] for k in readings.at(Place.AXIS_1)}
+    turned = np.ptp(readings.joints[:, 0]) > np.radians(30.0)
+    if len(on_axis_1) < 2 and not base_calibrated and not turned:
+        return (
+            "axis 1 is not shown: P1 and P2 are needed, or a turn of joint 1, or the word that the frame "
+            "was found by "
+            "turning joint 1 (--base-calibrated)"
+        )
+    return ""
+
+
+def _wrong_scale(readings: Readings, wanted: StandingArm, robot: Robot) -> str:
+    """Return what is wrong with the unit, or nothing: by distances that every posture has."""
+    ratios = []
+    for i, j in combinations(range(len(readings.markers)), 2):
+        a, b = readings.markers[i], readings.markers[j]
+        if not np.allclose(readings.joints[i], readings.joints[j], atol=1e-6):
+            continue
+        if a.place is b.place and a.place in {Place.AXIS_1, Place.AXIS_2}:
+            known = abs(a.offset - b.offset)
+        elif {a.place, b.place} == {Place.AXIS_2, Place.END_EFFECTOR}:
+            on_axis = a if a.place is Place.AXIS_2 else b
+            known = float(np.hypot(wanted.offset + robot.tip_offset - on_axis.offset, wanted.radius))
+        else:
+            continue
+        if known >= _SHORTEST:
+            ratios.append(float(np.linalg.norm(readings.positions[i] - readings.positions[j])) / known)
+    if not ratios:
+        return ""
+    ratio = float(np.median(ratios))
+    if 0.8 < ratio < 1.25:
+        return ""
+    for words, factor in _FACTORS.items():
+        if 0.8 < ratio / factor < 1.25:
+            return f"the unit is wrong: distances between the markers are {words}"
+    return (
+        f"distances between the markers are {ratio:.3g} times what the hardware has: "
+        "is the unit wrong, or are the names?"
+    )
+
+
+def _wrong_base(readings: Readings) -> str:
+    """Return what is wrong with the frame by the markers on axis 1, or nothing."""
+    some = readings.at(Place.AXIS_1)
+    offsets = readings.offsets[some]
+    if len(some) < 2 or np.ptp(offsets) == 0.0:
+        return ""
+    at = readings.positions[some]
+    slope = (offsets - offsets.mean()) @ (at - at.mean(axis=0)) / np.sum((offsets - offsets.mean()) ** 2)
+    p1 = at.mean(axis=0) - offsets.mean() * slope
+    up = slope / np.linalg.norm(slope)
+    if up[2] < np.cos(_UPRIGHT):
+        along = "xyz"[int(np.argmax(np.abs(up)))]
+        sign = "-" if up[np.argmax(np.abs(up))] < 0.0 else ""
+        if abs(up).max() < np.cos(_UPRIGHT):
+            tilt = np.degrees(np.arccos(up[2]))
+            return f"this is not the base frame: from P1 to P2 axis 1 leans {tilt:.0f} deg off z"
+        hint = " or P1 and P2 have each other's names" if (sign, along) == ("-", "z") else ""
+        return f"this is not the base frame, whose z is up: P1 to P2 points along {sign}{along}{hint}"
+    if np.linalg.norm(p1) > _AT_ORIGIN:
+        return f"this is not the base frame, whose origin is P1: P1 is at {_mm(p1)}"
+    return ""
+
+
+def _frame_that_fits(readings: Readings, fitted: _Fitter) -> str:
+    """Return which other frame the readings fit, or nothing."""
+    for words, turn in _FRAMES.items():
+        other = Readings(readings.markers, readings.positions @ turn.T, readings.joints)
+        if fitted(other).plausibility > _PLAUSIBLE:
+            return f"the frame is {words}"
+    return ""
+
+
+def _swap_that_fits(readings: Readings, fitted: _Fitter) -> str:
+    """Return which two names must be exchanged for the readings to fit, or nothing."""
+    names = dict.fromkeys(readings.names)
+    for one, other in combinations(names, 2):
+        a, b = (next(m for m in readings.markers if m.name == name) for name in (one, other))
+        swapped = tuple(b if m.name == one else a if m.name == other else m for m in readings.markers)
+        if fitted(Readings(swapped, readings.positions, readings.joints)).plausibility > _PLAUSIBLE:
+            return f"{one} and {other} seem to have each other's names"
+    return ""
+
+
+def _culprit(readings: Readings, fitted: _Fitter, tip_offset: float) -> tuple[str, float] | None:
+    """Return the one marker without which all others agree, and how far off it is, m; or None."""
+    found = []
+    for name in dict.fromkeys(readings.names):
+        rest = readings.without(name)
+        if _missing(rest, base_calibrated=True):
+            continue
+        fit = fitted(rest)
+        if fit.excess > 0 and fit.plausibility > _PLAUSIBLE and fit.shows_axes:
+            found.append((fit.plausibility, name))
+    found.sort(reverse=True)
+    if not found or (len(found) > 1 and found[1][0] > 0.1 * found[0][0]):
+        return None
+    name = found[0][1]
+    arm = fitted(readings.without(name)).arm
+    off = readings.take([k for k, other in enumerate(readings.names) if other == name])
+    away = marker_positions(arm, off, tip_offset) - off.positions
+    return name, float(np.linalg.norm(away, axis=1).max())
+
+
+def _frame_nearer(fit: ArmFit, wanted: StandingArm) -> str:
+    """Return in which other frame the arm would be where it was wanted, or nothing."""
+    turn = wanted.about_axis_1(np.vstack([wanted.end, wanted.end + wanted.axis]), np.full(2, fit.arm.joint1))
+    end, axis = turn[0], turn[1] - turn[0]
+
+    def off(turn: FloatArray) -> float:
+        return float(
+            np.hypot(
+                np.linalg.norm(turn @ fit.arm.end - end), 0.15 * np.linalg.norm(turn @ fit.arm.axis - axis)
+            )
+        )
+
+    if float(fit.arm.axis @ axis) < 0.0 and np.linalg.norm(fit.arm.end - end) < _NEAR:
+        return "axis 2 points the other way than was wanted: P3 and P4 seem to have each other's names"
+    if off(np.eye(3)) > _FAR:
+        for words, turn in _FRAMES.items():
+            if off(turn) < min(_NEAR, 0.5 * off(np.eye(3))):
+                near = f"{1e3 * off(turn):.0f} mm"
+                return f"the frame is {words}: so seen, the arm is {near} from where it was wanted"
+    return ""
+
+
+def _mm(point: FloatArray) -> str:
+    return "(" + ", ".join(f"{1e3 * value:.0f}" for value in point) + ") mm"

@@ -1,0 +1,102 @@
+"""What a search says of itself: its status, and in words what is missed and why."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.errors import SynthError
+from synth.rounding import rounded_up
+from synth.synthesis.starts import exact_designs
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from synth.synthesis.solution import Solution, Status
+    from synth.synthesis.wanted import Design
+    from synth.task import Task
+
+_REACHED_WITHOUT_WAY = "every target is reached, but"
+_REASONS = 3  # of a kind that are told
+
+
+def message(task: Task, status: Status, designs: Sequence[Design], reasons: Sequence[str]) -> str:
+    """Return how a search ended in one sentence: its status, what the best shape misses, and why."""
+    misses = _what_misses(task, designs[0]) if designs else []
+    return ": ".join(filter(None, [ending(status, designs), "; ".join([*misses, *reasons])]))
+
+
+def ending(status: Status, designs: Sequence[Design]) -> str:
+    """Return how a search ended without what is missed: its status, or that ways are missing.
+
+    Args:
+        status: How it ended.
+        designs: Its shapes, the one that is told of first.
+    """
+    ways = designs[0].ways if designs and designs[0].verification.found else ()
+    no_way = [f"no way was found from {way.start} to {way.end}" for way in ways if not way.found]
+    if not no_way:
+        return status.told(with_shape=bool(designs))
+    more = [f"and {len(no_way) - _REASONS} more"] if len(no_way) > _REASONS else []
+    return f"{_REACHED_WITHOUT_WAY} {'; '.join([*no_way[:_REASONS], *more])}"
+
+
+def showing(solution: Solution, number: int) -> Solution:
+    """Return a solution that begins with another of its shapes: all that is told is then of that one.
+
+    Args:
+        solution: What a synthesis found, its best shape first.
+        number: Which shape, counted from 1, the best.
+
+    Raises:
+        SynthError: There are not so many.
+    """
+    designs, count = solution.designs, len(solution.designs)
+    if not 1 <= number <= count:
+        are = (
+            "is no shape"
+            if not count
+            else f"{'is 1 shape' if count == 1 else f'are {count} distinct shapes'}"
+        )
+        raise SynthError(f"there is no shape {number} to show: there {are} of this task")
+    ordered = (designs[number - 1], *designs[: number - 1], *designs[number:])
+    told = message(solution.task, solution.status, ordered, solution.reasons)
+    return replace(solution, designs=ordered, shape=number, message=told)
+
+
+def why_no_better(task: Task, designs: Sequence[Design], blocked: Sequence[Design]) -> tuple[str, ...]:
+    """Return sentences that say why a search found no more, as far as that is known.
+
+    Args:
+        task: The task.
+        designs: The shapes that were found, the best first.
+        blocked: Shapes that the hardware cannot take.
+    """
+    if designs:
+        return _why_not_exact(task)
+    # As far as the shape tells that breaks the fewest limits.
+    nearest = min((d.verification.violations for d in blocked), key=len, default=())
+    blocking = [violation.sentence for violation in nearest[:_REASONS]]
+    return ("no shape was found that the hardware can take", *blocking)
+
+
+def _what_misses(task: Task, design: Design) -> list[str]:
+    """Return a sentence for each target that is not reached, the worst first, three at most."""
+    check = design.verification
+    order = np.argsort(-check.misses / task.tolerances)
+    order = order[~np.array(check.within_tolerance)[order]]
+    sentences = [
+        f"{task.targets[i].name} misses by {rounded_up(check.misses[i], digits=2)} mm"
+        for i in order[:3].tolist()
+    ]
+    return sentences if len(order) <= 3 else [*sentences, f"and {len(order) - 3} more"]
+
+
+def _why_not_exact(task: Task) -> tuple[str, ...]:
+    """Return a sentence if algebra knows of no arm at all that meets the targets exactly."""
+    if exact_designs(task) != ():
+        return ()
+    count = len(task.targets)
+    return (f"no arm with this rigid link passes exactly through such {count} targets, by algebra",)

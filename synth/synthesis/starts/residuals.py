@@ -1,0 +1,123 @@
+"""What of the misses no joint can take up, and how it changes with the shape: for many shapes at once."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.synthesis.starts.postures import dot
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from synth.arrays import FloatArray
+    from synth.robot import Interval
+    from synth.synthesis.starts.postures import Postures
+    from synth.synthesis.starts.shapes import Population
+
+_FARTHEST_STEP = 0.5  # of joint 2, rad
+_AT_LIMIT = 1e-9  # rad
+_TINY = 1e-12
+_SLOWEST = 1e-6  # m / rad, of P5 by joint 2
+
+# Of shapes and targets.
+_Pairs = tuple["NDArray[np.intp]", "NDArray[np.intp]"]
+
+
+class Residuals:
+    """What is left of the misses across the directions in which the joints are free, and its derivatives.
+
+    Directions have their components outward, around and up, on the first axis. One, the normal of the
+    half-plane's curve, is always left; where a joint is held by its limit another one is.
+
+    Args:
+        population: N shapes.
+        postures: Their postures at n targets.
+        limits: Limits of joint 2.
+    """
+
+    def __init__(self, population: Population, postures: Postures, limits: Interval) -> None:
+        self._postures = postures
+        frame, position = population.end
+        self._lever = postures.point - position.T[..., None]
+        self._circle = None
+        if not population.robot.rigid_link.is_fixed:
+            kinematics = population.kinematics
+            from_centre = postures.point - kinematics.centre.T[..., None]
+            from_centre = from_centre / np.maximum(kinematics.radius, _TINY)[:, None]
+            self._circle = np.broadcast_to(frame[..., 0].T[..., None], from_centre.shape), from_centre
+        self._along, self._speed = postures.free_tangent
+        uphill = dot(self._along, postures.miss)
+        self._free = np.where(
+            ((postures.theta2 <= limits.lower + _AT_LIMIT) & (uphill > 0.0))
+            | ((postures.theta2 >= limits.upper - _AT_LIMIT) & (uphill < 0.0)),
+            0.0,
+            1.0,
+        )
+
+    def following(self, moved: FloatArray) -> FloatArray:
+        """Return how far joint 2 follows the link's ends, to first order, shape (N, n), rad.
+
+        Args:
+            moved: How the ends and circles move, shape (N, 6 or 8).
+        """
+        slopes = self._slopes(self._along)
+        along = dot(self._along, self._postures.miss) + np.einsum("nti,ni->nt", slopes, moved)
+        step = -along / np.maximum(self._speed, _SLOWEST) * self._free
+        return np.asarray(np.clip(step, -_FARTHEST_STEP, _FARTHEST_STEP))
+
+    def normal_equations(self, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return J^T W J, shape (N, k, k), and J^T W r, shape (N, k), by the motions of ends and circles.
+
+        Args:
+            weights: Of the squared misses, shape (N, n).
+        """
+        root = np.sqrt(weights)
+        outward, _, up = self._postures.tangent
+        steep = np.hypot(outward, up) + _TINY
+        normal = np.stack([-up / steep, np.zeros_like(up), outward / steep])
+        slopes = self._slopes(normal) * root[..., None]
+        residual = dot(normal, self._postures.miss) * root
+        by_motion = slopes.transpose(0, 2, 1)
+        curvature, slope = by_motion @ slopes, (by_motion @ residual[..., None])[..., 0]
+        for direction, (owner, target) in self._held_directions(normal, steep):
+            owners, first = np.unique(owner, return_index=True)
+            some = self._slopes(direction, (owner, target)) * root[owner, target, None]
+            left = dot(direction, self._postures.miss[:, owner, target]) * root[owner, target]
+            curvature[owners] += np.add.reduceat(some[:, :, None] * some[:, None, :], first)
+            slope[owners] += np.add.reduceat(some * left[:, None], first)
+        return curvature, slope
+
+    def _held_directions(self, normal: FloatArray, steep: FloatArray) -> Iterator[tuple[FloatArray, _Pairs]]:
+        """Yield directions that held joints leave beside the normal, and for which shapes and targets."""
+        turns, bends = self._postures.turns, self._free == 1.0
+        outward, _, up = self._postures.tangent
+        owner, target = np.nonzero(~bends)  # along the curve in the half-plane
+        if len(owner):
+            along = np.stack([outward, np.zeros_like(up), up]) / steep
+            yield along[:, owner, target], (owner, target)
+        owner, target = np.nonzero(~turns & bends)  # across the way on which joint 2 alone leads
+        if len(owner):
+            across = np.cross(normal[:, owner, target], self._along[:, owner, target], axis=0)
+            yield across, (owner, target)
+        owner, target = np.nonzero(~turns & ~bends)  # around axis 1
+        if len(owner):
+            yield np.tile([[0.0], [1.0], [0.0]], len(owner)), (owner, target)
+
+    def _slopes(self, direction: FloatArray, some: _Pairs | None = None) -> FloatArray:
+        """Return how P5 moves along directions, by the motions of ends and circles, shape (..., 6 or 8)."""
+
+        def of(array: FloatArray) -> FloatArray:
+            return array if some is None else array[:, some[0], some[1]]
+
+        cos, sin = of(self._postures.outward)
+        x, y = direction[0] * cos - direction[1] * sin, direction[0] * sin + direction[1] * cos
+        z = direction[2]
+        ax, ay, az = of(self._lever)
+        columns = [x, y, z, ay * z - az * y, az * x - ax * z, ax * y - ay * x]
+        if self._circle is not None:
+            columns += [dot(np.stack([x, y, z]), of(by)) for by in self._circle]
+        return np.stack(columns, axis=-1)

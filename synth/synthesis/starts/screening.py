@@ -1,0 +1,82 @@
+"""Screening: many random shapes that the link can take, and about how far each passes by the targets."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.synthesis.starts.category_offsets import category_offsets
+from synth.synthesis.starts.refinement import relative_weights
+from synth.synthesis.starts.shapes import Population
+
+if TYPE_CHECKING:
+    from synth.arrays import FloatArray
+    from synth.robot import Robot
+    from synth.task import Task
+
+_SHAPES = 20_000
+# Misses are only compared up to here, m: beyond, a shape is far off and by how much says little.
+_FAR = 0.3
+
+
+@lru_cache(maxsize=4)
+def shapes_at_random(robot: Robot, floor: float | None, seed: int) -> Population:
+    """Return random shapes whose links end above the floor, the same for all tasks of a seed.
+
+    They keep where they end, which takes a few megabytes; the next task need not ask again.
+    """
+    population = Population.sample(robot, _SHAPES, np.random.default_rng([seed, 0]))
+    return population if floor is None else population.take(population.end[1][:, 2] > floor)
+
+
+def estimated_misses(task: Task, population: Population) -> FloatArray:
+    """Return about how far the workspace of each shape passes by each target; no joint limits.
+
+    In the plane of height z and squared distance N = |P5|^2 a workspace is an ellipse,
+    (z, N) = (cz, |c|^2 + R^2) + M (cos theta2, sin theta2). For d = (z, N) of the target less the
+    centre, |adj(M) d| - |det M| vanishes on it; divided by the length of its gradient it is the
+    distance to first order, and, unlike Gamma, it is so for perfect squares too.
+
+    Args:
+        task: The task.
+        population: The shapes.
+
+    Returns:
+        Estimated misses, shape (n, N), m.
+    """
+    centre, radius = population.kinematics.centre, population.kinematics.radius
+    _, v, t = np.moveaxis(population.end[0], -1, 0)
+    m00, m01 = -radius * t[:, 2], radius * v[:, 2]
+    m10 = -2.0 * radius * np.einsum("ij,ij->i", centre, t)
+    m11 = 2.0 * radius * np.einsum("ij,ij->i", centre, v)
+    determinant = np.abs(m00 * m11 - m01 * m10)
+    squared = np.einsum("ij,ij->i", centre, centre) + radius**2
+    misses = np.empty((len(task.targets), len(radius)))
+    for row, (x, y, z) in enumerate(task.positions):
+        height = z - centre[:, 2]
+        beyond = x * x + y * y + z * z - squared
+        a = m11 * height - m01 * beyond
+        b = m00 * beyond - m10 * height
+        norm = np.hypot(a, b) + 1e-15
+        by_squared = (m00 * b - m01 * a) / norm
+        by_height = (m11 * a - m10 * b) / norm + 2.0 * z * by_squared
+        by_radius = 2.0 * np.hypot(x, y) * by_squared
+        misses[row] = np.abs(norm - determinant) / (np.hypot(by_height, by_radius) + 1e-12)
+    return misses
+
+
+def screened(task: Task, population: Population) -> FloatArray:
+    """Return what shapes cost at first sight, shape (N,), m^2.
+
+    The mean squared misses, estimated and weighted, and the squared distance from the category that the task
+    asks for.
+
+    Args:
+        task: The task.
+        population: The shapes, of shape (N,).
+    """
+    misses = np.minimum(estimated_misses(task, population), _FAR)
+    offsets = category_offsets(task, population)
+    return np.asarray(relative_weights(task) @ misses**2 + np.sum(offsets**2, axis=-1))

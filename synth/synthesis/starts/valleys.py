@@ -1,0 +1,207 @@
+"""The valleys of the objective, where no shape meets all targets: which of them is the lowest?
+
+There is about one valley for each way in which the targets may lie on the near or the far side of the
+surface. Three kinds of steps lead from those known to others, in turn:
+
+* bending the best shapes a little at random: most valleys are beside a better one;
+* giving a few targets of the best shapes another angle of joint 2: where the workspace has two sheets
+  close together, no small step moves a target from one to the other;
+* fresh shapes that know nothing of the others: they find what is far from all of these.
+
+Fresh starts also tell when it is enough. If many of them end in the same best valley, there hardly is a
+better one that is so narrow that all of them missed it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.synthesis.starts.overlaps import overlaps
+from synth.synthesis.starts.refinement import Refined, cleared, level, refine
+from synth.synthesis.starts.shapes import ARCS, Population, into_limits
+from synth.task import Objective
+from synth.watch import Watch
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from synth.arrays import FloatArray
+    from synth.task import Task
+
+# Rounds of the three steps; shapes kept; of these the parents, which miss differently; those of half of the
+# children; and children of each.
+_ROUNDS, _KEPT, _PARENTS, _BEST_PARENTS, _CHILDREN = 10, 400, 20, 2, 10
+# Sizes of the bends, in units of the largest curvature; lengths change by a twentieth of that, m.
+_SIZES, _LENGTHS = (0.03, 0.1, 0.3), 0.05
+_MOST_SWAPPED = 2  # targets that get another angle of joint 2
+# Iterations: of bent shapes; of swapped ones, at first on the branches they were given; of fresh ones, the
+# best quarter of which goes on.
+_BENT, _SWAPPED, _FRESH = 10, (4, 8), (5, 15)
+_GO_ON = 4
+_ALIKE = 0.01  # costs that differ by less than this part are those of one valley, bent in several ways
+# It is enough if so many shapes meet all targets, to this part of the tightest tolerance; or if such a share
+# of the fresh shapes, and so many of them, ended within this part of the least cost.
+_ENOUGH, _EXACT = 5, 2e-3
+_AGREEING, _SAME = 0.05, 1e-3
+# But with a cost below this, m^2, the workspace may have two sheets so close together that most shapes end
+# with some targets on the wrong one.
+_SHEETS = 4e-6
+_TINY = 1e-14  # m^2
+_CLEARED = 24  # shapes that are moved out of obstacles
+_OF_A_KIND = 4
+_LEVELLED = 48  # valleys whose least worst miss is looked for
+
+
+@dataclass(frozen=True, eq=False)
+class Valleys:
+    """What is known of the valleys of a task.
+
+    Attributes:
+        task: The task.
+        watch: When it is up every step ends with what there is.
+        best: The best shapes.
+        fresh: Where the best of the shapes ended that know nothing of each other: mean squared misses, m^2.
+        drawn: How many of these there were.
+    """
+
+    task: Task
+    watch: Watch
+    best: Refined
+    fresh: FloatArray
+    drawn: int
+
+    @classmethod
+    def of(cls, task: Task, fresh: Population, watch: Watch | None = None) -> Valleys:
+        """Return what fresh shapes tell; when the watch is up, as far as they are."""
+        watch = watch or Watch()
+        best = _weighed(task, refine(task, fresh, is_up=watch.is_up), watch)
+        return cls(task, watch, best, best.cost, len(best.cost))
+
+    @property
+    def promising(self) -> Refined:
+        """The best shapes, moved out of obstacles; for minimax, with the least worst miss they can have."""
+        best = self._out_of_obstacles()
+        if self.task.objective is Objective.LEAST_SQUARES:
+            return best
+        some = best.take(_some_of_each_kind(best, 1)[:_LEVELLED])
+        return _weighed(self.task, level(self.task, some, self.watch.is_up), self.watch)
+
+    @property
+    def within_tolerance(self) -> Refined:
+        """The promising shapes that may meet all targets: they do so in the mean."""
+        promising = self.promising
+        near = promising.cost <= float(self.task.tolerances.min()) ** 2
+        return promising.take(np.flatnonzero(near))
+
+    def _out_of_obstacles(self) -> Refined:
+        best, is_up = self.best.best(_CLEARED), self.watch.is_up
+        deep = np.flatnonzero(overlaps(self.task, best.population, best.joints, is_up=is_up).any(axis=1))
+        if not len(deep) or is_up():
+            return self.best
+        moved = _weighed(self.task, cleared(self.task, best.take(deep), is_up), self.watch)
+        return self.best if is_up() else Refined.joined([self.best, moved])
+
+    @property
+    def agreed(self) -> bool:
+        """Whether enough shapes meet all targets, or enough fresh ones ended in the best valley."""
+        exact = (_EXACT * float(self.task.tolerances.min())) ** 2
+        if np.count_nonzero(self.best.cost < exact) >= _ENOUGH:
+            return True
+        least = self.best.cost.min()
+        agreeing = np.count_nonzero(self.fresh <= (1.0 + _SAME) * least)
+        return bool(least > _SHEETS and agreeing >= max(_AGREEING * self.drawn, _ENOUGH))
+
+    def explored(self, draw: Callable[[], Population], rng: np.random.Generator) -> Valleys:
+        """Return what is known after a search for better valleys.
+
+        Args:
+            draw: Draws fresh shapes.
+            rng: Source of randomness.
+        """
+        now = replace(self, best=self.best.best(_KEPT))
+        for _ in range(_ROUNDS):
+            for step in (_bent, _swapped):
+                if now.agreed or self.watch.is_up():
+                    return now
+                self.watch.tell(phase="looking among valleys")
+                children = step(self.task, now.best.take(_parents(now.best)), rng, self.watch)
+                now = now.with_better(children)
+            now = now.with_fresh(draw())
+        return now
+
+    def with_fresh(self, shapes: Population) -> Valleys:
+        """Return what is known with some more fresh shapes, the worst of which are given up half-way."""
+        first, last = _FRESH
+        is_up = self.watch.is_up
+        refined = refine(self.task, shapes, iterations=first, is_up=is_up)
+        refined = refined.best(len(shapes.length) // _GO_ON)
+        refined = refine(self.task, refined.population, iterations=last, near=True, is_up=is_up)
+        refined = _weighed(self.task, refined, self.watch)
+        fresh = np.concatenate([self.fresh, refined.cost])
+        return replace(
+            self,
+            best=self.with_better(refined).best,
+            fresh=fresh,
+            drawn=self.drawn + len(shapes.length),
+        )
+
+    def with_better(self, refined: Refined) -> Valleys:
+        """Return what is known with more shapes, of which the best are kept.
+
+        Where the worst miss counts only a few of each valley are: the one that is lowest in the smooth norm
+        need not be so in the end.
+        """
+        both = Refined.joined([self.best, refined])
+        if self.task.objective is Objective.MINIMAX:
+            both = both.take(_some_of_each_kind(both, _OF_A_KIND))
+        return replace(self, best=both.best(_KEPT))
+
+
+def _bent(task: Task, parents: Refined, rng: np.random.Generator, watch: Watch) -> Refined:
+    """Return shapes after bending them at random by a little or more."""
+    unknowns = parents.population.unknowns
+    size = rng.choice(_SIZES, (len(unknowns), 1)) * np.ones(unknowns.shape)
+    size[:, 2 * ARCS :] *= _LENGTHS
+    changed = into_limits(task.robot, unknowns + size * rng.normal(size=unknowns.shape))
+    bent = Population(task.robot, changed)
+    return _weighed(task, refine(task, bent, iterations=_BENT, near=True, is_up=watch.is_up), watch)
+
+
+def _swapped(task: Task, parents: Refined, rng: np.random.Generator, watch: Watch) -> Refined:
+    """Return shapes after giving one or two targets of each another angle of joint 2."""
+    limits, theta2 = task.robot.joint_limits.second, parents.joints[..., 1]
+    swapped = rng.integers(1, _MOST_SWAPPED + 1, (len(theta2), 1))
+    chosen = np.argsort(rng.uniform(size=theta2.shape), axis=1) < swapped
+    angles = np.where(chosen, rng.uniform(limits.lower, limits.upper, theta2.shape), theta2)
+    first, last = _SWAPPED
+    led = refine(task, parents.population, angles, iterations=first, is_up=watch.is_up)
+    led = refine(task, led.population, iterations=last, near=True, is_up=watch.is_up)
+    return _weighed(task, led, watch)
+
+
+def _parents(refined: Refined) -> NDArray[np.intp]:
+    """Return the best shapes in order, many times over, except those that miss like an earlier one."""
+    different = _some_of_each_kind(refined, 1)
+    children = _PARENTS * _CHILDREN
+    return np.concatenate(
+        [np.resize(different[:_PARENTS], children // 2), np.resize(different[:_BEST_PARENTS], children // 2)]
+    )
+
+
+def _some_of_each_kind(refined: Refined, count: int) -> NDArray[np.intp]:
+    """Return the best shapes in order, of those that miss alike at most `count`."""
+    order = np.argsort(refined.cost, kind="stable")
+    kinds = np.round(np.log(refined.cost[order] + _TINY) / _ALIKE)
+    _, first, kind = np.unique(kinds, return_index=True, return_inverse=True)
+    return np.asarray(order[np.arange(len(order)) - first[kind] < count])
+
+
+def _weighed(task: Task, refined: Refined, watch: Watch) -> Refined:
+    """Return shapes whose costs say, too, how deep they are inside obstacles or themselves, m^2."""
+    depth = overlaps(task, refined.population, refined.joints, is_up=watch.is_up)
+    return replace(refined, cost=refined.cost + np.mean(depth**2, axis=-1))

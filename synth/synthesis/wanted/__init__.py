@@ -1,0 +1,27 @@
+"""What a person wants of a shape: ways, margins, forgiveness of the hand, calm; and shapes that have it."""
+
+from synth.synthesis.wanted.design import Design
+from synth.synthesis.wanted.displaced import misses_displaced, rotations
+from synth.synthesis.wanted.figures import judged
+from synth.synthesis.wanted.forgiveness import HAND_PLACES, HAND_TURNS, Forgiveness, hand_forgiveness
+from synth.synthesis.wanted.ranking import best_of, leaves_no_wish, objective
+from synth.synthesis.wanted.wanted_shapes import wished
+from synth.synthesis.wanted.ways import MOST_MOTIONS, Motion, motions
+
+__all__ = [
+    "HAND_PLACES",
+    "HAND_TURNS",
+    "MOST_MOTIONS",
+    "Design",
+    "Forgiveness",
+    "Motion",
+    "best_of",
+    "hand_forgiveness",
+    "judged",
+    "leaves_no_wish",
+    "misses_displaced",
+    "motions",
+    "objective",
+    "rotations",
+    "wished",
+]

@@ -1,0 +1,166 @@
+"""How much a shape forgives the hand that bends it: what the targets miss by once the link is placed.
+
+A hand places the link's end 9.64 +- 2.06 mm off (Ranne, Clark and Rojas, 2022), in any direction, and turns
+it by 4 +- 1.2 deg about any axis. The joints then take up what they can, within their limits. What is left
+depends on the shape: a rigid link that points along the normal of the workspace at a target loses nothing
+to a small turn of the link's end, one that lies across it half a metre times the turn.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cache
+from statistics import NormalDist
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.arrays import FloatArray, frozen
+from synth.robot import Kinematics
+from synth.synthesis.starts import Aims, Postures
+
+if TYPE_CHECKING:
+    from synth.robot import Arm
+    from synth.task import Task
+
+# The error of a hand as published, m, and the turn that goes with it, rad: means and deviations.
+HAND_PLACES, HAND_TURNS = (9.64e-3, 2.06e-3), (math.radians(4.0), math.radians(1.2))
+_OFF, _TURNED = NormalDist(*HAND_PLACES), NormalDist(*HAND_TURNS)
+_ERRORS = 128
+# Of more targets so many are asked, evenly along the list: the rest hardly changes the worst.
+_MOST_TARGETS = 200
+_TOGETHER = 20_000  # postures, so that the arrays stay in the cache
+
+
+@dataclass(frozen=True)
+class Forgiveness:
+    """What becomes of a task after a hand placed the link, over the errors of a hand.
+
+    Attributes:
+        expected_worst_miss: Mean of the largest miss of any target, m.
+        chance: Share of the errors with which every target is within its tolerance, 0 to 1.
+    """
+
+    expected_worst_miss: float
+    chance: float
+
+
+@dataclass(frozen=True, eq=False)
+class HandErrors:
+    """Where a hand may leave the link's end.
+
+    Attributes:
+        shifts: Displacements of the end, shape (E, 3), m.
+        turns: Rotations of its frame about itself, shape (E, 3, 3).
+    """
+
+    shifts: FloatArray
+    turns: FloatArray
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "shifts", frozen(self.shifts))
+        object.__setattr__(self, "turns", frozen(self.turns))
+
+    @classmethod
+    def of(cls, uniform: FloatArray) -> HandErrors:
+        """Return the errors that belong to points of the unit cube, shape (E, 6)."""
+        off, turned = (
+            np.maximum([of.inv_cdf(float(u)) for u in column], 0.0)
+            for of, column in ((_OFF, uniform[:, 0]), (_TURNED, uniform[:, 3]))
+        )
+        shifts = off[:, None] * _directions(uniform[:, 1:3])
+        return cls(shifts, _rotations(_directions(uniform[:, 4:6]), turned))
+
+    def on(self, kinematics: Kinematics, ends: FloatArray) -> Kinematics:
+        """Return the joints of shapes after each error, shape (N * E,), shape by shape.
+
+        Args:
+            kinematics: The joints of the shapes, of shape (N,).
+            ends: Where their links end, shape (N, 3), m: what the frame turns about.
+        """
+        frame = self.turns @ kinematics.frame[:, None]
+        lever = (self.turns @ (kinematics.centre - ends)[:, None, :, None])[..., 0]
+        centre = ends[:, None] + self.shifts + lever
+        radius = np.repeat(kinematics.radius, len(self.shifts))
+        return Kinematics(frame.reshape(-1, 3, 3), centre.reshape(-1, 3), radius)
+
+
+@cache
+def _hand() -> HandErrors:
+    """Return the errors that every shape is judged by: a fixed sample that fills its space evenly."""
+    # The additive recurrence of the root of g^7 = g + 1 (Roberts, 2018), in six dimensions.
+    root = 1.0
+    for _ in range(60):
+        root = (1.0 + root) ** (1.0 / 7.0)
+    steps = root ** -np.arange(1.0, 7.0)
+    return HandErrors.of((0.5 + np.arange(1.0, _ERRORS + 1.0)[:, None] * steps) % 1.0)
+
+
+def hand_forgiveness(task: Task, arm: Arm, joints: FloatArray | None = None) -> Forgiveness:
+    """Return what becomes of a task after a hand placed the link.
+
+    Args:
+        task: The task.
+        arm: The robot in the shape that the hand aims at.
+        joints: Its joint angles at the targets, shape (n, 2), rad; by default the closest ones.
+    """
+    frame, end = arm.end_frame
+    circle = arm.circle
+    kinematics = Kinematics(frame[None], circle.centre[None], np.array([circle.radius]))
+    some = _some(len(task.targets))
+    positions = task.table.positions[some]
+    there = arm.closest_joints(positions)[0] if joints is None else joints[some]
+    aims = Aims(arm.base.to_base(positions), task.robot.joint_limits)
+    worst, within = misses_after_a_hand(aims, task.tolerances[some], kinematics, end[None], there[None, :, 1])
+    return Forgiveness(float(worst[0]), float(within[0]))
+
+
+def misses_after_a_hand(
+    aims: Aims, tolerances: FloatArray, kinematics: Kinematics, ends: FloatArray, theta2: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the expected worst misses of many shapes, m, and their chances, both of shape (N,).
+
+    Args:
+        aims: The targets.
+        tolerances: Their tolerances, shape (n,), m.
+        kinematics: The joints of the shapes, of shape (N,).
+        ends: Where their links end, shape (N, 3), m.
+        theta2: Angles of joint 2 at which they meet the targets, shape (N, n), rad.
+    """
+    hand = _hand()
+    count = len(hand.shifts)
+    together = max(1, _TOGETHER // (count * len(tolerances)))
+    worst, within = np.empty(len(ends)), np.empty(len(ends))
+    for first in range(0, len(ends), together):
+        some = slice(first, first + together)
+        aimed = Kinematics(kinematics.frame[some], kinematics.centre[some], kinematics.radius[some])
+        from_here = np.repeat(theta2[some], count, axis=0)
+        left = Postures.led_from(aims, hand.on(aimed, ends[some]), from_here)
+        misses = np.sqrt(left.squared).reshape(-1, count, len(tolerances))
+        worst[some] = misses.max(axis=2).mean(axis=1)
+        within[some] = (misses <= tolerances).all(axis=2).mean(axis=1)
+    return worst, within
+
+
+def _some(count: int) -> FloatArray | slice:
+    """Return which of so many targets are asked."""
+    if count <= _MOST_TARGETS:
+        return slice(None)
+    return np.linspace(0, count - 1, _MOST_TARGETS).astype(np.intp)
+
+
+def _directions(uniform: FloatArray) -> FloatArray:
+    """Return unit vectors, uniform on the sphere, for points of the unit square, shape (E, 2)."""
+    height, angle = 2.0 * uniform[:, 0] - 1.0, 2.0 * np.pi * uniform[:, 1]
+    across = np.sqrt(1.0 - height**2)
+    return np.column_stack([across * np.cos(angle), across * np.sin(angle), height])
+
+
+def _rotations(axes: FloatArray, angles: FloatArray) -> FloatArray:
+    """Return rotations about unit vectors, shape (E, 3), by angles, shape (E,), rad; shape (E, 3, 3)."""
+    x, y, z = axes.T
+    zero = np.zeros_like(x)
+    cross = np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]]).transpose(2, 0, 1)
+    sin, versine = np.sin(angles)[:, None, None], (1.0 - np.cos(angles))[:, None, None]
+    return np.asarray(np.eye(3) + sin * cross + versine * (cross @ cross))

@@ -1,0 +1,320 @@
+"""How the arm gets from each target to the next: within its joint limits, clear of everything.
+
+A way is straight in the two joint angles, or a few straight pieces where something is in between. That
+each piece is clear is certain, by the bounds of `ArmBody`; that there is no way is not.
+"""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.arrays import FloatArray, frozen
+from synth.checks import refuse_unless
+from synth.robot import ArmBody, turned
+from synth.synthesis.check import seen_by
+from synth.synthesis.solution import joints_reaching
+from synth.synthesis.wanted.design import Design
+from synth.synthesis.wanted.margins import joint_shortfalls
+from synth.task import Task
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+    from synth.geometry import Solid
+
+MOST_MOTIONS = 50  # of more targets nobody asks for the ways between them
+
+# The search for a way around: angles on a grid, samples of tube and rod, and the clearances to keep at these,
+# m, one after the other.
+_GRID = (91, 64)
+_SAMPLES = 24
+_MARGINS = (0.02, 0.008, 0.003)
+_STEP = 0.02  # rad, between postures that are looked at when a way is straightened
+# What a missing way, and a posture with no margin of a joint, are worth in travel, rad: more than any ways.
+_NO_WAY, _CRAMPED = 1e6, 1e3
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """How the arm gets from one target to the next.
+
+    Attributes:
+        start: Name of the target that it leaves.
+        end: Name of the target that it gets to.
+        joints: Angles (theta1, theta2) that it passes, shape (k, 2), rad, straight in between: two for
+            a straight way, none if no way was found.
+    """
+
+    start: str
+    end: str
+    joints: FloatArray
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "joints", frozen(self.joints))
+
+    @property
+    def found(self) -> bool:
+        """Whether there is a way."""
+        return len(self.joints) > 0
+
+    @property
+    def travel(self) -> float:
+        """Travel of the joint that moves more, rad; 0 if no way was found."""
+        return _travel(self.joints)
+
+    def describe(self) -> str:
+        """Return which way, in degrees."""
+        if not self.found:
+            return f"{self.start} to {self.end}: no way was found that keeps clear"
+        change = np.degrees(self.joints[-1] - self.joints[0])
+        sentence = (
+            f"{self.start} to {self.end}: joint 1 by {change[0]:+z.1f} deg, joint 2 by {change[1]:+z.1f} deg"
+        )
+        if abs(change[0]) > 180.0:
+            sentence += " (the long way round: the short one is closed by the limits of joint 1)"
+        if len(self.joints) > 2:
+            via = ", ".join(f"({a:z.1f}, {b:z.1f})" for a, b in np.degrees(self.joints[1:-1]))
+            sentence += f", by way of {via} deg"
+        return sentence
+
+
+def motions(task: Task, design: Design) -> tuple[Motion, ...]:
+    """Return how the arm gets from each target to the next, in the order of the task.
+
+    Where a target is reached at several joint angles, those are taken that keep off the limits of the joints
+    and shorten the ways altogether.
+
+    Args:
+        task: The task.
+        design: The arm.
+
+    Returns:
+        One motion less than there are targets.
+    """
+    refuse_unless("task", task, Task)
+    refuse_unless("design", design, Design)
+    return design.ways or routed(task, design)[0]
+
+
+def routed(task: Task, design: Design) -> tuple[tuple[Motion, ...], FloatArray]:
+    """Return the ways as `motions` does, and the joint angles that they take at each target, (n, 2), rad."""
+    postures = joints_reaching(task, design)
+    ways = _Room(task, design).ways(postures)
+    cramped = [_CRAMPED * joint_shortfalls(task.robot, joints) for joints in postures]
+    # To each posture of a target the least cost so far, rad, and which postures are taken on the way there.
+    best: list[tuple[float, tuple[int, ...]]]
+    best = [(float(cost), (index,)) for index, cost in enumerate(cramped[0])]
+    for step, costs in enumerate(cramped[1:]):
+        best = [
+            min(
+                (cost + _cost(ways[step][taken[-1], there]) + float(costs[there]), (*taken, there))
+                for cost, taken in best
+            )
+            for there in range(len(costs))
+        ]
+    _, chosen = min(best)
+    names = [target.name for target in task.targets]
+    found = (ways[step][pair] for step, pair in enumerate(itertools.pairwise(chosen)))
+    motions = tuple(Motion(*pair, way) for pair, way in zip(itertools.pairwise(names), found, strict=True))
+    return motions, np.array([joints[index] for joints, index in zip(postures, chosen, strict=True)])
+
+
+def _cost(way: FloatArray) -> float:
+    """Return the travel on a way, rad; where there is none, more than any."""
+    return _travel(way) if len(way) else _NO_WAY
+
+
+def _travel(way: FloatArray) -> float:
+    """Return the travel of the joint that moves more, piece by piece, rad."""
+    return float(np.abs(np.diff(way, axis=0)).max(axis=1, initial=0.0).sum())
+
+
+class _Room:
+    """What an arm may bump into as its joints move."""
+
+    def __init__(self, task: Task, design: Design) -> None:
+        self._body = ArmBody(design.arm)
+        self._limits = task.robot.joint_limits
+        self._solids: list[Solid] = list(seen_by(task, design.arm))
+        # For the rod only: joint 1 keeps all heights, so the tube stays where it is over the floor.
+        self._floor = -np.inf if task.floor is None else task.floor
+
+    def ways(self, postures: Sequence[FloatArray]) -> list[dict[tuple[int, int], FloatArray]]:
+        """Return for each target but the last a way from each of its postures to each of the next target's.
+
+        Args:
+            postures: Joint angles at each target, shape (k, 2), rad.
+        """
+        steps = [
+            list(itertools.product(range(len(here)), range(len(there))))
+            for here, there in itertools.pairwise(postures)
+        ]
+        if not steps:
+            return []
+        start = np.array([postures[step][i] for step, pairs in enumerate(steps) for i, _ in pairs])
+        end = np.array([postures[step + 1][j] for step, pairs in enumerate(steps) for _, j in pairs])
+        straight = iter(zip(self.clear(start, end), start, end, strict=True))
+        ways = []
+        for pairs in steps:
+            some = {pair: next(straight) for pair in pairs}
+            ways.append({pair: np.stack([a, b])[: 2 if clear else 0] for pair, (clear, a, b) in some.items()})
+            if not any(len(way) for way in ways[-1].values()):
+                self._go_around(ways[-1], some)
+        return ways
+
+    def _go_around(
+        self,
+        ways: dict[tuple[int, int], FloatArray],
+        some: dict[tuple[int, int], tuple[np.bool_, FloatArray, FloatArray]],
+    ) -> None:
+        """Put the first way around what is in between in the place of one that is not clear."""
+        # The arm's own clearance and that of the floor depend on joint 2 alone, and every way passes all
+        # angles between its ends: without obstacles, where the straight way is closed, all are.
+        for pair, (_, start, end) in some.items() if self._solids else ():
+            ways[pair] = self._way_around(start, end)
+            if len(ways[pair]):
+                break
+
+    def clear(self, start: FloatArray, end: FloatArray) -> NDArray[np.bool_]:
+        """Return whether straight ways, shape (n, 2), are certainly clear."""
+        clear = self._clear_of_itself(start[:, 1], end[:, 1])
+        some = np.flatnonzero(clear)
+        if self._solids and len(some):
+            least = self._body.from_obstacles(start[some], self._solids, end=end[some], enough=0.0)
+            clear[some] = least.min(axis=(1, 2)) >= self._body.clear
+        return clear
+
+    def _clear_of_itself(self, start: FloatArray, end: FloatArray) -> NDArray[np.bool_]:
+        """Return whether the rod is clear of tube and floor as theta2 goes from start to end, shape (n,)."""
+        # Mostly all is clear between the least and the largest angle: one question in place of n.
+        whole = np.array([min(start.min(), end.min())]), np.array([max(start.max(), end.max())])
+        for ways in (whole, (start, end)):
+            least = np.minimum(self._body.rod_from_tube(*ways, enough=0.0), self._over_floor(*ways))
+            if (least >= self._body.clear).all():
+                return np.ones(len(start), dtype=np.bool_)
+        return np.asarray(least >= self._body.clear)
+
+    def _over_floor(self, start: FloatArray, end: FloatArray) -> FloatArray:
+        """Return how far the rod stays over the floor as theta2 goes from start to end, shape (n,), m.
+
+        The height of P5 is z = c_z + R (sin(theta2) v_z - cos(theta2) t_z), least at atan2(-v_z, t_z).
+        """
+        body, kinematics = self._body, self._body.arm.kinematics
+        lower, upper = np.minimum(start, end), np.maximum(start, end)
+        lowest = np.arctan2(-kinematics.frame[2, 1], kinematics.frame[2, 2])
+        lowest = lowest + 2.0 * np.pi * np.ceil((lower - lowest) / (2.0 * np.pi))
+        angles = np.stack([start, end, np.where(lowest <= upper, lowest, start)])
+        heights = kinematics.forward(0.0, angles)[..., 2].min(axis=0)
+        return np.asarray(np.minimum(heights, body.arm.end_frame[1][2]) - body.rod_radius - self._floor)
+
+    def _way_around(self, start: FloatArray, end: FloatArray) -> FloatArray:
+        """Return a way through the grid, straightened, or none."""
+        first, second = self._limits.base, self._limits.second
+        theta1 = np.linspace(first.lower, first.upper, _GRID[0])
+        theta2 = np.linspace(second.lower, second.upper, _GRID[1])
+        grid = np.stack(np.meshgrid(theta1, theta2, indexing="ij"), axis=-1)
+        sampled = self._sampled_clearance(theta1[:, None], theta2[None])
+        for margin in _MARGINS:
+            nodes = _shortest(sampled > margin, _node(grid, start), _node(grid, end))
+            if nodes is None:
+                continue
+            way = self._straightened(np.array([start, *(grid[node] for node in nodes), end]), margin)
+            if self.clear(way[:-1], way[1:]).all():
+                return way
+        return np.empty((0, 2))
+
+    def _straightened(self, way: FloatArray, margin: float) -> FloatArray:
+        """Return the way with as few corners as samples allow."""
+        kept, here = [way[0]], 0
+        while here < len(way) - 1:
+            for there in range(len(way) - 1, here, -1):
+                count = 2 + int(np.abs(way[there] - way[here]).max() / _STEP)
+                steps = way[here] + np.linspace(0.0, 1.0, count)[:, None] * (way[there] - way[here])
+                # At the targets themselves it may be narrower.
+                if there == here + 1 or (self._sampled_clearance(*steps.T) > 0.5 * margin).all():
+                    break
+            kept.append(way[there])
+            here = there
+        return np.array(kept)
+
+    def _sampled_clearance(self, theta1: FloatArray, theta2: FloatArray) -> FloatArray:
+        """Return about how far tube and rod keep from everything, by samples, m.
+
+        The tube moves with joint 1 alone, and what the rod keeps from tube and floor depends on joint 2
+        alone: on a grid of angles, shapes (k, 1) and (1, l), these are asked for few angles.
+
+        Args:
+            theta1: Angles of joint 1, rad.
+            theta2: Angles of joint 2, rad; both broadcast.
+        """
+        body = self._body
+        share = np.linspace(0.0, 1.0, _SAMPLES)
+        tube = body.tube(body.tube_radius + share * (body.arm.shape.length - body.tube_radius))
+        joint = min(body.arm.robot.link.diameter, body.rod_length)
+        rod = body.rod(joint + share * (body.rod_length - joint), theta2[..., None])
+        apart = np.linalg.norm(rod[..., None, :] - tube[_before_the_joint(body, share)], axis=-1)
+        least = apart.min(axis=(-2, -1)) - body.tube_radius - body.rod_radius
+        least = np.minimum(least, rod[..., 2].min(axis=-1) - body.rod_radius - self._floor)
+        tube, rod = turned(tube, theta1[..., None]), turned(rod, theta1[..., None])
+        for solid in self._solids:
+            from_tube = solid.distance(tube).min(axis=-1) - body.tube_radius
+            least = np.minimum(
+                least, np.minimum(from_tube, solid.distance(rod).min(axis=-1) - body.rod_radius)
+            )
+        return np.asarray(least)
+
+
+def _before_the_joint(body: ArmBody, share: FloatArray) -> NDArray[np.intp]:
+    """Return which samples of the tube are farther than a diameter from the joint, one at least."""
+    clear = share * body.arm.shape.length <= body.arm.shape.length - body.arm.robot.link.diameter
+    return np.flatnonzero(clear)
+
+
+def _node(grid: FloatArray, joints: FloatArray) -> tuple[int, int]:
+    nearest = np.unravel_index(np.argmin(np.abs(grid - joints).max(axis=-1)), grid.shape[:2])
+    return int(nearest[0]), int(nearest[1])
+
+
+def _shortest(
+    free: NDArray[np.bool_], start: tuple[int, int], end: tuple[int, int]
+) -> list[tuple[int, int]] | None:
+    """Return the shortest path through free nodes of a grid and its diagonals, by Dijkstra's algorithm.
+
+    The ends count as free, and so do their neighbours: the arm gets away from a target as it got there.
+    """
+    free = free.copy()
+    for i, j in (start, end):
+        free[max(i - 1, 0) : i + 2, max(j - 1, 0) : j + 2] = True
+    distance, before = {start: 0.0}, {start: start}
+    queue = [(0.0, start)]
+    while queue:
+        travelled, node = heapq.heappop(queue)
+        if node == end:
+            path = [node]
+            while path[-1] != start:
+                path.append(before[path[-1]])
+            return path[::-1]
+        if travelled > distance[node]:
+            continue
+        for neighbour in _neighbours(node, free):
+            length = travelled + math.hypot(neighbour[0] - node[0], neighbour[1] - node[1])
+            if length < distance.get(neighbour, math.inf):
+                distance[neighbour], before[neighbour] = length, node
+                heapq.heappush(queue, (length, neighbour))
+    return None
+
+
+def _neighbours(node: tuple[int, int], free: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
+    for i, j in itertools.product((-1, 0, 1), repeat=2):
+        neighbour = node[0] + i, node[1] + j
+        inside = 0 <= neighbour[0] < free.shape[0] and 0 <= neighbour[1] < free.shape[1]
+        if (i or j) and inside and free[neighbour]:
+            yield neighbour
