@@ -10,8 +10,8 @@ from synth import PRESETS, Solution, link_to_pose, load_task, solve
 from synth.export import draw_sheet
 from synth.guide import make_guide
 from synth.measurement import nearest_realisable
-from synth.robot import LinkReach
 from synth.measurement.distances.reading import load_measurements
+from synth.robot import LinkReach
 
 ROOT = Path(__file__).parents[1]
 TASK = ROOT / "problems" / "four-targets" / "task.yaml"

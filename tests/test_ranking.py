@@ -8,7 +8,7 @@ from planted import planted_task
 
 from synth.synthesis import verify
 from synth.synthesis.wanted.design import Design
-from synth.synthesis.wanted.figures import judged
+from synth.synthesis.wanted.judging import judged
 from synth.synthesis.wanted.ranking import STEPS, best_of, preferences, preferred
 
 GOOD = {

@@ -12,7 +12,7 @@ from synth.robot import BasePose, Interval, MalleableLink, RigidLink
 from synth.synthesis import NotFoundError, Status, solve, verify
 from synth.synthesis.message import message
 from synth.synthesis.wanted.design import Design
-from synth.synthesis.wanted.figures import judged
+from synth.synthesis.wanted.judging import judged
 from synth.task import Objective, PointTarget, Task, Topology
 
 SPECIAL = [Topology.SPHERICAL, Topology.PUMA, Topology.SCARA]

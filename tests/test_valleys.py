@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from planted import ROBOT, noisy, planted_task
 
-from synth.synthesis.starts.refinement import Refined
+from synth.synthesis.starts.refined import Refined
 from synth.synthesis.starts.shapes import Population
 from synth.synthesis.starts.start_points import starts
 from synth.synthesis.starts.valleys import Valleys

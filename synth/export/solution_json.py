@@ -152,12 +152,12 @@ def _link(arm: Arm) -> dict[str, object]:
 
 def _listed(task: Task, design: Design) -> NDArray[np.intp]:
     """Return the indices of the targets that are told of in full, in their order: the worst ones if many."""
-    return np.sort(worst_targets(task, design, MOST_TARGETS))
+    return np.sort(worst_targets(task, design.verification, MOST_TARGETS))
 
 
 def _targets(task: Task, design: Design) -> list[object]:
     # The fields of a TargetResult bear the names of the contract.
-    return list(target_results(task, design, _listed(task, design)))
+    return list(target_results(task, design.arm, design.verification, _listed(task, design)))
 
 
 def _targets_missed(task: Task) -> list[object]:

@@ -169,7 +169,9 @@ class SweptCircle:
         """
         p = np.asarray(points, dtype=np.float64)
         rho, z = np.hypot(p[..., 0], p[..., 1]), p[..., 2]
-        nearest = self.points(closest_angles(self, rho.ravel(), z.ravel())).reshape(p.shape)
+        start, quarter = self.points([0.0, 0.5 * np.pi]) - self.centre
+        angles = closest_angles(self.centre, start, quarter, rho.ravel(), z.ravel())
+        nearest = self.points(angles).reshape(p.shape)
         off_axis = np.where(rho > 0.0, rho, 1.0)
         outwards = np.where(rho[..., None] > 0.0, p[..., :2] / off_axis[..., None], [1.0, 0.0])
         radial = np.hypot(nearest[..., 0], nearest[..., 1])

@@ -11,7 +11,6 @@ from synth.geometry.trigonometric import critical_angles, root_angles, sampling_
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
-    from synth.geometry.circle import SweptCircle
 
 _DEGREE = 4  # of the stationarity condition, below
 _BLOCK = 2048  # points at a time: what they need stays in the processor's cache
@@ -22,8 +21,10 @@ _HALVINGS = 52
 _BESIDE = 1e-14  # rad
 
 
-def closest_angles(circle: SweptCircle, rho: FloatArray, z: FloatArray) -> FloatArray:
-    """Return the angles, as in `SweptCircle.points`, at which a swept circle is nearest to points.
+def closest_angles(
+    centre: FloatArray, start: FloatArray, quarter: FloatArray, rho: FloatArray, z: FloatArray
+) -> FloatArray:
+    """Return the angles t at which the circle c + cos(t) s + sin(t) q, swept about z, is nearest to points.
 
     In the half-plane (rho, z) the surface is one closed curve (rho(t), z(t)). With A = N(t) / 2 - z z(t)
     and B = rho(t)^2 along the circle, the squared distance is a constant plus 2 A - 2 rho sqrt(B), and
@@ -34,14 +35,16 @@ def closest_angles(circle: SweptCircle, rho: FloatArray, z: FloatArray) -> Float
     and is found there by bisection, which no multiplicity of the root can mislead.
 
     Args:
-        circle: The circle.
+        centre: Its centre c, shape (3,), m.
+        start: From there to where it begins, s, shape (3,), m.
+        quarter: Likewise after a quarter of it, q, shape (3,), m.
         rho: Distances from axis 1, shape (n,), m.
         z: Heights, shape (n,), m.
 
     Returns:
         Shape (n,), rad.
     """
-    section = _Section.of(circle)
+    section = _Section.of(centre, start, quarter)
     blocks = range(_BLOCK, len(rho), _BLOCK)
     parts = zip(np.split(rho, blocks), np.split(z, blocks), strict=True)
     return np.concatenate([_closest_in_block(section, *part) for part in parts])
@@ -62,9 +65,8 @@ class _Section:
     turning: FloatArray
 
     @classmethod
-    def of(cls, circle: SweptCircle) -> _Section:
-        start, quarter = circle.points([0.0, 0.5 * np.pi]) - circle.centre
-        bare = cls(circle.centre, start, quarter, np.empty(0))
+    def of(cls, centre: FloatArray, start: FloatArray, quarter: FloatArray) -> _Section:
+        bare = cls(centre, start, quarter, np.empty(0))
         x, y, _, dx, dy, dz = bare.point(sampling_angles(_DEGREE))
         rims = critical_angles((x * dx + y * dy) ** 2 + (x**2 + y**2) * dz**2)
         passing = critical_angles((x**2 + y**2)[::2])
@@ -73,7 +75,7 @@ class _Section:
             step = (x * dx + y * dy) / np.maximum(dx**2 + dy**2, _TINY)
             passing = passing - np.clip(step, -1e-6, 1e-6)
         turning = np.concatenate([rims, passing - _BESIDE, passing + _BESIDE])
-        return cls(circle.centre, start, quarter, turning)
+        return cls(centre, start, quarter, turning)
 
     def point(self, t: FloatArray) -> tuple[FloatArray, ...]:
         """Return x, y, z of P5 and their derivatives by t."""

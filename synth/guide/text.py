@@ -218,8 +218,8 @@ def _target_lines(task: Task, design: Design) -> list[str]:
         reached = sum(design.verification.within_tolerance)
         are = "is" if reached == 1 else "are"
         lines = [_bullet(f"{reached} of {count} targets {are} within tolerance; the {_MOST_TARGETS} worst:")]
-        shown = worst_targets(task, design, _MOST_TARGETS)
-    targets = target_results(task, design, shown)
+        shown = worst_targets(task, design.verification, _MOST_TARGETS)
+    targets = target_results(task, design.arm, design.verification, shown)
     width = max(len(target.name) for target in targets)
     for target in targets:
         theta1, theta2 = (math.degrees(angle) for angle in target.joints)

@@ -2,17 +2,9 @@
 
 from synth.synthesis.blocking import explain
 from synth.synthesis.bound import Bound
-from synth.synthesis.check import Verification, Violation, verify
+from synth.synthesis.check import TargetResult, Verification, Violation, target_results, verify, worst_targets
 from synth.synthesis.message import ending, showing
-from synth.synthesis.solution import (
-    NotFoundError,
-    Release,
-    Solution,
-    Status,
-    TargetResult,
-    target_results,
-    worst_targets,
-)
+from synth.synthesis.solution import NotFoundError, Release, Solution, Status
 from synth.synthesis.solve import solve
 from synth.synthesis.wanted import (
     HAND_PLACES,

@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.errors import in_a_line
-from synth.robot import ANYWHERE, Interval, links_to_poses
 from synth.synthesis.all_targets import WholeTask, for_all_targets, verified_in_time
 from synth.synthesis.bound import why_impossible
-from synth.synthesis.check import verify
 from synth.synthesis.message import message, why_no_better
 from synth.synthesis.polishing import Polishing
+from synth.synthesis.present_shape import changing_little
 from synth.synthesis.proving import Certifier
 from synth.synthesis.solution import Solution, Status
 from synth.synthesis.starts import Start, in_equal_arcs, starts
@@ -205,7 +204,10 @@ class Search:
         """Rank what was found and say what it is worth."""
         whole = WholeTask(self.task)
         with self.kept():
-            known = [*self.polishing.designs, *self._changing_little()]
+            known = [
+                *self.polishing.designs,
+                *changing_little(self.part, self.polishing.designs, self.seed, self.watch),
+            ]
             whole = self._whole(best_of(self.part, known, self.watch.is_up))
         if self.broke_off is not None and not whole.designs:
             with self.kept():
@@ -274,31 +276,6 @@ class Search:
         cut_short = self.watch.interrupted and not self.complete
         status = Status.LIMIT if cut_short or whole.unseen else Status.BEST_EFFORT
         return status, why_no_better(self.task, designs, self.polishing.blocked)
-
-    def _changing_little(self) -> list[Design]:
-        """Return the shapes found, bent again: to the same workspace, as near to the present one as may be.
-
-        Joint 1 takes up by how much the link is turned about axis 1, if its limits allow.
-        """
-        current = self.task.current
-        found = [design for design in self.polishing.designs if design.verification.found]
-        if current is None or not found:
-            return []
-        best = [design.arm for design in best_of(self.part, found)]
-        ends = [arm.shape.end_frame() for arm in best]
-        positions, axes = np.array([end for _, end in ends]), np.array([frame[:, 0] for frame, _ in ends])
-        bent_again = []
-        for where in (ANYWHERE, Interval.fixed(0.0)):
-            with self.watch.on("solving"):
-                shapes = links_to_poses(
-                    self.task.robot.link, positions, axes, current=current, theta1=where, seed=self.seed
-                )
-            with self.watch.on("verifying"):
-                for arm, shape in zip(best, shapes, strict=True):
-                    if shape is not None:
-                        nearer = replace(arm, shape=shape)
-                        bent_again.append(Design(nearer, verify(self.part, nearer)))
-        return [design for design in bent_again if design.verification.found]
 
     def _report(self) -> None:
         worst = min(

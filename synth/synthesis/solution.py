@@ -5,16 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from synth.arrays import FloatArray, frozen
 from synth.errors import SynthError
 from synth.sentences import SentenceEnum
-from synth.synthesis.check import clear_of_everything
+from synth.synthesis.check import TargetResult, target_results
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from synth.robot import Arm
     from synth.synthesis.bound import Bound
     from synth.synthesis.wanted import Design
@@ -48,35 +43,6 @@ class NotFoundError(SynthError):
     def __init__(self, solution: Solution) -> None:
         super().__init__(solution.message)
         self.solution = solution
-
-
-@dataclass(frozen=True)
-class TargetResult:
-    """What becomes of one target. Positions in the task frame, m.
-
-    Attributes:
-        name: The target's name.
-        position: Where it is, shape (3,).
-        tolerance: Largest miss that counts as reached, m.
-        reached: Where the end effector gets to, shape (3,).
-        miss: Distance between the two, m; infinite where there is no shape.
-        within_tolerance: Whether the target is reached.
-        clearance: How far the arm at least keeps from the obstacles there, m; told up to 0.1 m, and
-            infinite without obstacles.
-        joints: Joint angles (theta1, theta2), rad.
-        alternatives: Other joint angles that reach it within its tolerance, shape (k, 2), rad, as clear of
-            everything.
-    """
-
-    name: str
-    position: FloatArray
-    tolerance: float
-    reached: FloatArray
-    miss: float
-    within_tolerance: bool
-    clearance: float
-    joints: FloatArray
-    alternatives: FloatArray
 
 
 @dataclass(frozen=True)
@@ -175,7 +141,7 @@ class Solution:
         Raises:
             NotFoundError: There is none.
         """
-        return target_results(self.task, self.best)
+        return target_results(self.task, self.best.arm, self.best.verification)
 
     def or_raise(self) -> Solution:
         """Return this solution if it was found.
@@ -186,59 +152,3 @@ class Solution:
         if not self.found:
             raise NotFoundError(self)
         return self
-
-
-def joints_reaching(task: Task, design: Design, chosen: NDArray[np.intp] | None = None) -> list[FloatArray]:
-    """Return for each target all joint angles at which it is reached, clear of everything, the best first.
-
-    Args:
-        task: The task.
-        design: The shape.
-        chosen: Indices of the targets that are asked for; by default all of them.
-
-    Returns:
-        Pairs (theta1, theta2), shape (k, 2), rad; the closest alone where the target is missed.
-    """
-    check = design.verification
-    chosen = np.arange(len(task.targets)) if chosen is None else chosen
-    best = check.joints[chosen]
-    branches = design.arm.inverse_kinematics(task.table.positions[chosen])
-    other = np.abs(branches.joints - best[:, None]).max(axis=-1) > 1e-3
-    other &= branches.miss <= task.tolerances[chosen, None]
-    other &= np.array(check.within_tolerance)[chosen, None]
-    other[other] = clear_of_everything(task, design.arm, branches.joints[other])
-    return [np.vstack([joints, branches.joints[index][other[index]]]) for index, joints in enumerate(best)]
-
-
-def target_results(
-    task: Task, design: Design, chosen: NDArray[np.intp] | None = None
-) -> tuple[TargetResult, ...]:
-    """Return what becomes of each target of a task in one shape, or of those chosen by their indices."""
-    check = design.verification
-    chosen = np.arange(len(task.targets)) if chosen is None else chosen
-    joints = joints_reaching(task, design, chosen)
-    return tuple(
-        TargetResult(
-            name=task.table.names[index],
-            position=task.table.positions[index],
-            tolerance=float(task.tolerances[index]),
-            reached=frozen(check.reached[index]),
-            miss=float(check.misses[index]),
-            within_tolerance=check.within_tolerance[index],
-            clearance=float(check.clearances[index]),
-            joints=frozen(joints[row][0]),
-            alternatives=frozen(joints[row][1:]),
-        )
-        for row, index in enumerate(chosen.tolist())
-    )
-
-
-def worst_targets(task: Task, design: Design, most: int) -> NDArray[np.intp]:
-    """Return the indices of the targets that are missed most in a shape, by their tolerances, worst first.
-
-    Args:
-        task: The task.
-        design: The shape.
-        most: How many at most.
-    """
-    return np.argsort(-design.verification.misses / task.tolerances, kind="stable")[:most]

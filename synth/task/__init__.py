@@ -1,10 +1,7 @@
 """The task: what is asked, and how it is read from a file."""
 
 from synth.robot import BasePose
-from synth.task.hardware_distances import off_the_hardware
-from synth.task.model import DEFAULT_TOLERANCE, Objective, Obstacle, PointTarget, TargetTable, Task, Topology
-from synth.task.reading import as_path, as_task, load_robot, load_task, named_robot, parse_task, robot_within
-from synth.task.schema import (
+from synth.task.entry_types import (
     LARGEST,
     MAPPING,
     TEXT,
@@ -12,13 +9,17 @@ from synth.task.schema import (
     Name,
     Position,
     Positive,
-    RobotEntry,
     Strict,
     absent,
-    task_schema,
 )
+from synth.task.hardware_distances import off_the_hardware
+from synth.task.model import Objective, Obstacle, Task, Topology
+from synth.task.reading import as_path, as_task, load_robot, load_task, named_robot, parse_task, robot_within
+from synth.task.robot_schema import RobotEntry
+from synth.task.schema import task_schema
 from synth.task.sizes import PER_METRE
 from synth.task.solution_file import load_shapes
+from synth.task.targets import DEFAULT_TOLERANCE, PointTarget, TargetTable
 from synth.task.wording import validate
 
 __all__ = [

@@ -20,17 +20,20 @@ from synth.robot import (
     link_to_pose,
     turned,
 )
+from synth.task.entry_types import ends
 from synth.task.hardware_distances import off_the_hardware
-from synth.task.model import DEFAULT_TOLERANCE, Obstacle, PointTarget, TargetTable, Task
-from synth.task.schema import BoxEntry, CapsuleEntry, SphereEntry, ends
+from synth.task.model import Obstacle, Task
+from synth.task.schema import BoxEntry, CapsuleEntry, SphereEntry
 from synth.task.sizes import PER_METRE
+from synth.task.targets import DEFAULT_TOLERANCE, PointTarget, TargetTable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from synth.arrays import FloatArray
     from synth.geometry import Solid
-    from synth.task.schema import CurrentEntry, ObstacleEntry, RobotEntry, TargetEntry, TaskFile
+    from synth.task.robot_schema import RobotEntry
+    from synth.task.schema import CurrentEntry, ObstacleEntry, TargetEntry, TaskFile
 
 
 def to_task(file: TaskFile, robot: Robot, scan: FloatArray | None, name: str) -> Task:

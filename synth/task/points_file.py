@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.errors import InputError, Mistake
-from synth.task.schema import LARGEST
+from synth.task.entry_types import LARGEST
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -14,10 +14,12 @@ from synth.checks import described, did_you_mean
 from synth.errors import InputError, Mistake
 from synth.files import Document, KeyPath, read_file, read_text
 from synth.robot import PRESETS
+from synth.task.entry_types import SURFACES_TO_COME
 from synth.task.entry_values import default_name, to_robot, to_task
 from synth.task.model import Task
 from synth.task.points_file import read_points
-from synth.task.schema import SURFACES_TO_COME, RobotEntry, RobotFile, SurfaceTaskFile, TaskFile
+from synth.task.robot_schema import RobotEntry, RobotFile
+from synth.task.schema import SurfaceTaskFile, TaskFile
 from synth.task.sizes import PER_METRE, unmeant_distances, unmeant_sizes, unmeant_sizes_of_robot
 from synth.task.wording import validate
 

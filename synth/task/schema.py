@@ -5,141 +5,33 @@ Ranges are wide: they keep out slips (a unit mistaken, a digit too many) and wha
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import (
-    AfterValidator,
-    BaseModel,
     BeforeValidator,
-    ConfigDict,
     Discriminator,
     Field,
     Tag,
-    ValidationInfo,
-    field_validator,
     model_validator,
 )
 
-from synth.checks import told_apart, wrong_name
-from synth.robot import no_triangle
+from synth.task.entry_types import (
+    MAPPING,
+    TEXT,
+    Angle,
+    Coordinate,
+    LengthUnit,
+    Name,
+    Position,
+    Positive,
+    Strict,
+    absent,
+    without_case,
+)
 from synth.task.model import Objective, Topology
 
-ONE, RANGE, TEXT, MAPPING = "<one>", "<range>", "<text>", "<mapping>"  # tags of unions, never keys
-SURFACES_TO_COME = ("sphere", "plane", "torus", "mesh")
-SMALLEST = 1e-9
-LARGEST = 1e6
-
-
-def _in_order(limits: list[float]) -> list[float]:
-    if limits[0] > limits[1]:
-        raise ValueError(f"must run from low to high, but is [{', '.join(told_apart(*limits))}]")
-    return limits
-
-
-def _within_a_turn(limits: list[float]) -> list[float]:
-    if limits[1] - limits[0] > 360:
-        wide, _ = told_apart(limits[1] - limits[0], 360.0)
-        raise ValueError(f"must be at most 360 degrees wide, but is {wide}")
-    return limits
-
-
-def _one_line(text: str) -> str:
-    if wrong := wrong_name(text):
-        raise ValueError(wrong)
-    return text
-
-
-def _without_case(word: Any) -> Any:
-    """Return a fixed word in small letters, as the format has it."""
-    return word.lower() if isinstance(word, str) else word
-
-
-def absent() -> Any:
-    """Return the value of a key that was not written; to write null is a mistake all the same."""
-    return None
-
-
-_T = TypeVar("_T")
-Pair = Annotated[list[_T], Field(min_length=2, max_length=2), AfterValidator(_in_order)]
-Name = Annotated[str, AfterValidator(_one_line)]
-LengthUnit = Annotated[Literal["mm", "cm", "m"], BeforeValidator(_without_case)]
-Coordinate = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
-Position = Annotated[list[Coordinate], Field(min_length=3, max_length=3)]
-Positive = Annotated[float, Field(ge=SMALLEST, le=LARGEST)]
-Angle = Annotated[float, Field(ge=-720, le=720)]
-AngleRange = Annotated[Pair[Angle], AfterValidator(_within_a_turn)]
-PositiveOrRange = Annotated[
-    Annotated[Positive, Tag(ONE)] | Annotated[Pair[Positive], Tag(RANGE)],
-    Discriminator(lambda value: RANGE if isinstance(value, list) else ONE),
-]
-
-
-def ends(value: float | list[float]) -> tuple[float, float]:
-    """Return the ends of a `PositiveOrRange`; one number is both."""
-    return (value[0], value[1]) if isinstance(value, list) else (value, value)
-
-
-class Strict(BaseModel):
-    """Base of all entries: no unknown key, no silent conversion, no NaN."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
-
-
-class LinkEntry(Strict):
-    """The malleable link."""
-
-    length: PositiveOrRange = Field(description="length of its centreline, or [low, high] if it stretches")
-    min_bend_radius: Positive = Field(description="smallest radius of its centreline")
-    diameter: Positive = Field(default_factory=absent, description="outer diameter; 0 if absent")
-    max_total_bend_deg: Positive = Field(default_factory=absent, description="no limit if absent")
-
-
-class RigidLinkEntry(Strict):
-    """The rigid link; [low, high] is to be chosen by the synthesis."""
-
-    d35: PositiveOrRange = Field(description="distance from P3 to the end effector P5")
-    d45: PositiveOrRange = Field(description="distance from P4 to the end effector P5")
-    diameter: Positive = Field(default_factory=absent, description="outer diameter; 0 if absent")
-
-
-class JointLimitsEntry(Strict):
-    """Ranges of the joints in degrees."""
-
-    base: AngleRange = Field(default_factory=absent, description="range of joint 1; a full turn if absent")
-    second: AngleRange = Field(default_factory=absent, description="range of joint 2; a full turn if absent")
-
-
-class RobotEntry(Strict):
-    """A robot inside a task; its unit is that of the task unless it states its own."""
-
-    name: Name = Field(default_factory=absent, description="what the robot is called")
-    length_unit: LengthUnit = Field(default_factory=absent, description="unit of all lengths: mm, cm or m")
-    d12: Positive = Field(description="distance from P1 to P2, where the malleable link starts")
-    link: LinkEntry = Field(description="the malleable link: length, min_bend_radius, diameter")
-    d34: Positive = Field(description="distance of the points P3 and P4 on the second axis")
-    tip_offset: Coordinate = Field(
-        default_factory=absent, description="where the link ends, from P3 towards P4; d34 / 2 if absent"
-    )
-    rigid_link: RigidLinkEntry = Field(description="the distances d35 and d45 to the end effector")
-    joint_limits_deg: JointLimitsEntry = Field(
-        default_factory=JointLimitsEntry, description="ranges of the joints, in degrees"
-    )
-
-    @field_validator("rigid_link")
-    @classmethod
-    def _triangle(cls, rigid_link: RigidLinkEntry, info: ValidationInfo) -> RigidLinkEntry:
-        """Ask for one choice at least with |d35 - d45| <= d34 <= d35 + d45."""
-        if (d34 := info.data.get("d34")) is None:
-            return rigid_link
-        if wrong := no_triangle(d34, ends(rigid_link.d35), ends(rigid_link.d45)):
-            raise ValueError(wrong)
-        return rigid_link
-
-
-class RobotFile(RobotEntry):
-    """A robot file."""
-
-    length_unit: LengthUnit = Field(description="unit of all lengths in this file: mm, cm or m")
+if TYPE_CHECKING:
+    from synth.task.robot_schema import RobotEntry
 
 
 class BaseEntry(Strict):
@@ -262,10 +154,10 @@ class TaskFile(Strict):
     ] = Field(description="a preset's name, the path of a robot file, or a mapping")
     base: BaseEntry = Field(default_factory=BaseEntry, description="where the robot stands in the task frame")
     floor: Coordinate | None = Field(default=0.0, description="height in the base frame; null: no floor")
-    topology: Annotated[Topology, Field(strict=False), BeforeValidator(_without_case)] = Field(
+    topology: Annotated[Topology, Field(strict=False), BeforeValidator(without_case)] = Field(
         default=Topology.ANY, description="kind of shape"
     )
-    objective: Annotated[Objective, Field(strict=False), BeforeValidator(_without_case)] = Field(
+    objective: Annotated[Objective, Field(strict=False), BeforeValidator(without_case)] = Field(
         default=Objective.LEAST_SQUARES, description="norm of miss over tolerance"
     )
     targets: Annotated[list[TargetEntry], Field(min_length=1)] = Field(description="the points to reach")

@@ -8,10 +8,10 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import ValidationError
 
 from synth.errors import InputError, Mistake
 from synth.files import key_text
@@ -26,7 +26,9 @@ from synth.robot import (
     RigidLink,
     Robot,
 )
-from synth.task.model import Objective, Obstacle, PointTarget, Task, Topology
+from synth.task.model import Obstacle, Task
+from synth.task.solution_schema import ShapeEntry, SolidEntry, SolutionFile, TaskEntry
+from synth.task.targets import PointTarget
 
 if TYPE_CHECKING:
     import os
@@ -34,125 +36,6 @@ if TYPE_CHECKING:
 SCHEMA = "synth.solution/2"
 _MAX_BYTES = 200_000_000
 _MISTAKES_AT_MOST = 10
-
-_Number = Annotated[float, Field(ge=-1e9, le=1e9)]
-_Positive = Annotated[float, Field(gt=0.0, le=1e9)]
-_Point = Annotated[list[_Number], Field(min_length=3, max_length=3)]
-_Range = Annotated[list[_Number], Field(min_length=2, max_length=2)]
-
-
-class _Part(BaseModel):
-    """A part of the file; what it holds beside the fields named is for other readers."""
-
-    model_config = ConfigDict(frozen=True, extra="ignore", strict=False, allow_inf_nan=False)
-
-
-class _LinkLimits(_Part):
-    length: _Range
-    min_bend_radius: _Positive
-    diameter: _Number = 0.0
-    max_total_bend: _Positive | None = None
-
-
-class _RigidLink(_Part):
-    d35: _Range
-    d45: _Range
-    diameter: _Number = 0.0
-
-
-class _Limits(_Part):
-    base: _Range
-    second: _Range
-
-
-class _Robot(_Part):
-    name: str
-    d12: _Positive
-    link: _LinkLimits
-    tip_offset: _Number
-    d34: _Positive
-    rigid_link: _RigidLink
-    joint_limits: _Limits
-
-
-class _Base(_Part):
-    position: _Point
-    yaw: _Number = 0.0
-
-
-class _Target(_Part):
-    name: str
-    position: _Point
-    tolerance: _Positive
-    weight: _Positive = 1.0
-
-
-class _Ball(_Part):
-    center: _Point
-    radius: _Positive
-
-
-class _Capsule(_Part):
-    start: _Point = Field(alias="from")
-    end: _Point = Field(alias="to")
-    radius: _Positive
-
-
-class _Box(_Part):
-    center: _Point
-    size: _Point
-    yaw: _Number = 0.0
-
-
-class _Obstacle(_Part):
-    name: str
-    sphere: _Ball | None = None
-    box: _Box | None = None
-    capsule: _Capsule | None = None
-
-    @model_validator(mode="after")
-    def _one_solid(self) -> _Obstacle:
-        if sum(solid is not None for solid in (self.sphere, self.box, self.capsule)) != 1:
-            raise ValueError("must be one of sphere, box and capsule")
-        return self
-
-
-class _Task(_Part):
-    name: str
-    robot: _Robot
-    targets: Annotated[list[_Target], Field(min_length=1)]
-    base: _Base
-    floor: _Number | None = None
-    topology: Topology = Topology.ANY
-    objective: Objective = Objective.LEAST_SQUARES
-    obstacles: list[_Obstacle] = []
-
-
-class _Arc(_Part):
-    curvature: Annotated[list[_Number], Field(min_length=2, max_length=2)]
-    length: _Positive
-
-
-class _Link(_Part):
-    arcs: Annotated[list[_Arc], Field(min_length=1)]
-
-
-class _Shape(_Part):
-    link: _Link
-    distances: dict[str, _Number]
-
-    @model_validator(mode="after")
-    def _rigid_link(self) -> _Shape:
-        if not {"35", "45"} <= set(self.distances):
-            raise ValueError("must hold the distances 35 and 45")
-        return self
-
-
-class _File(_Part):
-    task: _Task
-    link: _Link | None = None
-    distances: dict[str, _Number] | None = None
-    alternatives: list[_Shape] = []
 
 
 def load_shapes(path: str | os.PathLike[str]) -> tuple[Task, tuple[Arm, ...]]:
@@ -180,8 +63,8 @@ def load_shapes(path: str | os.PathLike[str]) -> tuple[Task, tuple[Arm, ...]]:
         )
         raise InputError([Mistake(why, file, None, "schema")])
     try:
-        read = _File.model_validate(content)
-        main = None if read.link is None else _Shape(link=read.link, distances=read.distances or {})
+        read = SolutionFile.model_validate(content)
+        main = None if read.link is None else ShapeEntry(link=read.link, distances=read.distances or {})
     except ValidationError as error:
         mistakes = [
             Mistake(str(each["msg"]), file, None, key_text(each["loc"]))
@@ -214,7 +97,7 @@ def _interval(limits: list[float]) -> Interval:
     return Interval(min(limits), max(limits))
 
 
-def _task(read: _Task) -> Task:
+def _task(read: TaskEntry) -> Task:
     link, rigid, limits = read.robot.link, read.robot.rigid_link, read.robot.joint_limits
     robot = Robot(
         name=read.robot.name,
@@ -240,7 +123,7 @@ def _task(read: _Task) -> Task:
     )
 
 
-def _obstacle(read: _Obstacle) -> Obstacle:
+def _obstacle(read: SolidEntry) -> Obstacle:
     if read.capsule is not None:
         ends = np.array([read.capsule.start, read.capsule.end])
         return Obstacle(read.name, Capsule(ends, read.capsule.radius))
@@ -252,7 +135,7 @@ def _obstacle(read: _Obstacle) -> Obstacle:
     return Obstacle(read.name, Box(np.array(box.center), np.array(box.size), box.yaw))
 
 
-def _arm(task: Task, shape: _Shape) -> Arm:
+def _arm(task: Task, shape: ShapeEntry) -> Arm:
     arcs = shape.link.arcs
     made = LinkShape(np.array([arc.curvature for arc in arcs]), np.array([arc.length for arc in arcs]))
     return Arm(task.robot, made, shape.distances["35"], shape.distances["45"], task.base)

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ValidationError
 
 from synth.checks import described, did_you_mean, guesses
 from synth.files import KeyPath, Refused, key_text
-from synth.task.schema import MAPPING, ONE, RANGE, SURFACES_TO_COME, TEXT
+from synth.task.entry_types import MAPPING, ONE, RANGE, SURFACES_TO_COME, TEXT
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -30,7 +30,7 @@ def listed_targets(solution: Solution) -> Sequence[int]:
     count = len(solution.task.targets)
     if count <= _MOST_TARGETS or not solution.designs:
         return range(min(count, _MOST_TARGETS))
-    return sorted(worst_targets(solution.task, solution.best, _MOST_TARGETS).tolist())
+    return sorted(worst_targets(solution.task, solution.best.verification, _MOST_TARGETS).tolist())
 
 
 def target_table(page: Page, x: float, y: float, solution: Solution) -> float:
@@ -39,7 +39,11 @@ def target_table(page: Page, x: float, y: float, solution: Solution) -> float:
     Joint angles and clearances are those of a task that is met: nobody drives to a target that is missed.
     """
     task, listed = solution.task, listed_targets(solution)
-    results = target_results(task, solution.best, np.array(listed)) if solution.designs else None
+    results = (
+        target_results(task, solution.best.arm, solution.best.verification, np.array(listed))
+        if solution.designs
+        else None
+    )
     heading = "Targets"
     if len(listed) < len(task.targets):
         count = f"{len(listed)} of {len(task.targets)}"

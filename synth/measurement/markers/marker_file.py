@@ -8,9 +8,6 @@ Rows of one marker in one posture are frames: their mean counts. A row without c
 
 from __future__ import annotations
 
-import csv
-import difflib
-import json
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.errors import InputError, Mistake
+from synth.measurement.markers.marker_rows import UNITS, Row, csv_rows, is_gap, json_rows, number_of, text_of
 from synth.measurement.markers.markers import Marker, Readings, marker_named
 
 if TYPE_CHECKING:
@@ -27,18 +25,12 @@ if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.robot import Robot
 
-_MAX_BYTES = 50_000_000
 _MISTAKES_AT_MOST = 10
 _FARTHEST = 100.0  # m; a coordinate beyond this is no measurement of this robot
-_UNITS = {"mm": 1000.0, "m": 1.0}  # to divide by
-_OTHERS = ("joint1_deg", "joint2_deg", "frame")
-_COLUMNS = ("marker", *(f"{axis}_{unit}" for unit in _UNITS for axis in "xyz"), *_OTHERS)
 _NAMES = "there are P1 to P5, A1:150 and A2:-50.5 on the axes, E:-60 at the link's end, L050 on the link (mm)"
 _SAME_POSTURE = math.radians(0.5)
 _STRAIGHT = math.pi  # joint 2 where nothing is said of it
 _SPREAD = 2e-3  # m; a marker that moves by more while it is measured was not at rest
-
-_Row = tuple[int, dict[str, object]]
 
 
 def load_readings(path: str | os.PathLike[str], robot: Robot, joint1: float) -> Readings:
@@ -56,9 +48,9 @@ def load_readings(path: str | os.PathLike[str], robot: Robot, joint1: float) -> 
         InputError: The file cannot be read or is wrong; with its mistakes, up to ten.
     """
     file = str(path)
-    text = _text(Path(path), file)
+    text = text_of(Path(path), file)
     is_json = text.lstrip()[:1] == "{"
-    rows = _json_rows(text, file) if is_json else _csv_rows(text, file)
+    rows = json_rows(text, file) if is_json else csv_rows(text, file)
     return _readings(rows, robot, joint1, file)
 
 
@@ -77,9 +69,9 @@ def load_points(path: str | os.PathLike[str]) -> tuple[FloatArray, FloatArray | 
         InputError: The file cannot be read or is wrong; with its mistakes, up to ten.
     """
     file = str(path)
-    text = _text(Path(path), file)
+    text = text_of(Path(path), file)
     is_json = text.lstrip()[:1] == "{"
-    rows = (_json_rows if is_json else _csv_rows)(text, file, named=False)
+    rows = (json_rows if is_json else csv_rows)(text, file, named=False)
     mistakes: list[Mistake] = []
     table = [list(_numbers(row, number, file, mistakes)) for number, row in rows]
     seen = [values for values in table if values[0] is not None]
@@ -94,103 +86,7 @@ def load_points(path: str | os.PathLike[str]) -> tuple[FloatArray, FloatArray | 
     return array[:, :3], np.radians(array[:, 3:]) if all(angled) else None
 
 
-def _text(path: Path, file: str) -> str:
-    try:
-        with path.open("rb") as stream:
-            content = stream.read(_MAX_BYTES + 1)
-    except FileNotFoundError:
-        raise InputError([Mistake("there is no such file", file)]) from None
-    except (OSError, ValueError) as error:
-        raise InputError(
-            [Mistake(f"cannot be read: {getattr(error, 'strerror', None) or error}", file)]
-        ) from None
-    if len(content) > _MAX_BYTES:
-        raise InputError([Mistake(f"is larger than {_MAX_BYTES // 1_000_000} MB", file)])
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise InputError([Mistake("is not a text file in UTF-8", file)]) from None
-    if "\0" in text:
-        raise InputError([Mistake("is not a text file: it holds the character NUL", file)])
-    return text
-
-
-def _json_rows(text: str, file: str, *, named: bool = True) -> list[_Row]:
-    rows: list[_Row] = []
-    for number, line in enumerate(text.splitlines(), 1):
-        if not line.strip():
-            continue
-        try:
-            row = json.loads(line)
-        except (ValueError, RecursionError):
-            raise InputError([Mistake("is no JSON object on one line", file, number)]) from None
-        if not isinstance(row, dict):
-            raise InputError(
-                [Mistake("must be a JSON object with the keys marker, x_mm, y_mm, z_mm", file, number)]
-            )
-        _check_columns(list(row), file, number, named=named)
-        rows.append((number, row))
-    return rows
-
-
-def _csv_rows(text: str, file: str, *, named: bool = True) -> list[_Row]:
-    lines = csv.reader(text.splitlines())
-    try:
-        table = [
-            (lines.line_num, [cell.strip() for cell in cells])
-            for cells in lines
-            if any(map(str.strip, cells))
-        ]
-    except csv.Error as error:
-        raise InputError([Mistake(f"is no CSV: {error}", file, lines.line_num)]) from None
-    if not table:
-        raise InputError([Mistake("holds no markers", file)])
-    first, header = table[0][0], [cell.lower() for cell in table[0][1]]
-    if not any(cell in _COLUMNS for cell in header):
-        example = "marker,x_mm,y_mm,z_mm" if named else "x_mm,y_mm,z_mm"
-        raise InputError(
-            [
-                Mistake(
-                    f"must begin with a header such as {example}: in which unit are these numbers?",
-                    file,
-                    first,
-                )
-            ]
-        )
-    _check_columns(header, file, first, named=named)
-    mistakes = [
-        Mistake(f"has {len(cells)} cells, and the header {len(header)}", file, number)
-        for number, cells in table[1:]
-        if len(cells) != len(header)
-    ]
-    if mistakes:
-        raise InputError(mistakes[:_MISTAKES_AT_MOST])
-    return [(number, dict(zip(header, cells, strict=True))) for number, cells in table[1:]]
-
-
-def _check_columns(names: list[str], file: str, line: int, *, named: bool) -> None:
-    mistakes = []
-    for name in dict.fromkeys(names):
-        if name not in _COLUMNS:
-            near = difflib.get_close_matches(name, _COLUMNS, 1, 0.5)
-            hint = f"; did you mean {near[0]}?" if near else f"; there are {', '.join(_COLUMNS)}"
-            mistakes.append(Mistake(f"unknown column{hint}", file, line, name[:40]))
-        elif names.count(name) > 1:
-            mistakes.append(Mistake("is there twice", file, line, name))
-    units = [unit for unit in _UNITS if any(f"{axis}_{unit}" in names for axis in "xyz")]
-    if not mistakes and len(units) != 1:
-        mistakes.append(
-            Mistake("must have x, y and z in one unit: x_mm,y_mm,z_mm or x_m,y_m,z_m", file, line)
-        )
-    elif not mistakes and not all(f"{axis}_{units[0]}" in names for axis in "xyz"):
-        mistakes.append(Mistake(f"must have all of x_{units[0]}, y_{units[0]} and z_{units[0]}", file, line))
-    if named and "marker" not in names:
-        mistakes.append(Mistake("must name the marker", file, line, "marker"))
-    if mistakes:
-        raise InputError(mistakes)
-
-
-def _readings(rows: list[_Row], robot: Robot, joint1: float, file: str) -> Readings:
+def _readings(rows: list[Row], robot: Robot, joint1: float, file: str) -> Readings:
     """Return the means of the frames."""
     mistakes: list[Mistake] = []
     seen: dict[tuple[str, int, int], list[list[float]]] = {}
@@ -235,15 +131,15 @@ def _numbers(
     row: dict[str, object], number: int, file: str, mistakes: list[Mistake]
 ) -> Iterator[float | None]:
     """Yield x, y, z, m, and both angles, deg; None for what is not there; mistakes are noted."""
-    unit = next(unit for unit in _UNITS if f"x_{unit}" in row)
+    unit = next(unit for unit in UNITS if f"x_{unit}" in row)
     cells = [row[f"{axis}_{unit}"] for axis in "xyz"]
-    gap = any(_is_gap(cell) for cell in cells)
+    gap = any(is_gap(cell) for cell in cells)
     for axis, cell in zip("xyz", cells, strict=True):
         if gap:
             yield None
             continue
-        value = _number(cell)
-        if value is None or abs(value) / _UNITS[unit] > _FARTHEST:
+        value = number_of(cell)
+        if value is None or abs(value) / UNITS[unit] > _FARTHEST:
             what = (
                 "must be a number"
                 if value is None
@@ -259,30 +155,12 @@ def _numbers(
             )
             yield 0.0
         else:
-            yield value / _UNITS[unit]
+            yield value / UNITS[unit]
     for name in ("joint1_deg", "joint2_deg"):
         cell = row.get(name)
-        value = _number(cell)
-        if not _is_gap(cell) and (value is None or abs(value) > 720.0):
+        value = number_of(cell)
+        if not is_gap(cell) and (value is None or abs(value) > 720.0):
             mistakes.append(
                 Mistake(f"must be an angle in degrees, but is {str(cell)[:30]!r}", file, number, name)
             )
         yield None if value is None or abs(value) > 720.0 else value
-
-
-def _is_gap(cell: object) -> bool:
-    return (
-        cell is None
-        or (isinstance(cell, str) and cell.strip().lower() in {"", "nan", "null"})
-        or (isinstance(cell, float) and math.isnan(cell))
-    )
-
-
-def _number(cell: object) -> float | None:
-    if isinstance(cell, bool) or not isinstance(cell, str | int | float):
-        return None
-    try:
-        value = float(cell)
-    except (ValueError, OverflowError):
-        return None
-    return value if math.isfinite(value) else None

@@ -33,11 +33,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from synth.arrays import FloatArray, frozen
+from synth.robot.link.reach_curves import GRID, TURN, Piece, arcs_to, distances, lengths_of, runs
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -46,20 +47,9 @@ if TYPE_CHECKING:
 
     from synth.robot.hardware import MalleableLink
 
-_TURN = 2.0 * np.pi
-_GRID = 721  # points of a boundary curve among which the nearest is looked for
 _GOLDEN_STEPS = 32
 _GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
-_BISECTIONS = 50
 _BATCH = 2000  # positions at once, so that the table of distances stays small
-
-
-class _Piece(NamedTuple):
-    """A piece of the boundary: t -> (rho, h), in units of the bend radius, for t from first to last."""
-
-    curve: Callable[[FloatArray], FloatArray]
-    first: float
-    last: float
 
 
 @dataclass(frozen=True)
@@ -87,7 +77,7 @@ class LinkReach:
         Returns:
             The lengths, shape (..., 3), m.
         """
-        return self.link.min_bend_radius * _lengths(self._half_plane(position))
+        return self.link.min_bend_radius * lengths_of(self._half_plane(position))
 
     def contains(self, position: ArrayLike) -> NDArray[np.bool_]:
         """Whether a length of the interval reaches positions, shape (..., 3), m; shape (...)."""
@@ -137,7 +127,7 @@ class LinkReach:
         (widest, top), lowest = corners.max(axis=0), corners[:, 1].min()
         positions = np.empty((0, 3))
         while len(positions) < count:
-            rho, turn = widest * np.sqrt(rng.uniform(size=2 * count)), rng.uniform(0.0, _TURN, 2 * count)
+            rho, turn = widest * np.sqrt(rng.uniform(size=2 * count)), rng.uniform(0.0, TURN, 2 * count)
             h = rng.uniform(lowest, top, 2 * count)
             drawn = np.column_stack([rho * np.cos(turn), rho * np.sin(turn), h])
             positions = np.concatenate([positions, drawn[self.contains(drawn)]])
@@ -157,11 +147,11 @@ class LinkReach:
 
     def _holds(self, points: FloatArray) -> NDArray[np.bool_]:
         shortest, longest = self._extremes
-        first, last, again = np.moveaxis(_lengths(points), -1, 0)
+        first, last, again = np.moveaxis(lengths_of(points), -1, 0)
         return np.asarray(((first <= longest) & (shortest <= last)) | (again <= longest))
 
     @cached_property
-    def _pieces(self) -> tuple[_Piece, ...]:
+    def _pieces(self) -> tuple[Piece, ...]:
         """The curves of the boundary: l1 = longest, l2 = shortest, l3 = longest, and the circle d = 1."""
         shortest, longest = self._extremes
 
@@ -185,109 +175,36 @@ class LinkReach:
             return points[..., 0] >= 0.0
 
         def before_return(points: FloatArray) -> NDArray[np.bool_]:
-            return (points[..., 0] >= 0.0) & (points[..., 1] >= 0.0) & (_two_arcs(points)[1] >= longest)
+            return (points[..., 0] >= 0.0) & (points[..., 1] >= 0.0) & (arcs_to(points)[1] >= longest)
 
         def at_return(points: FloatArray) -> NDArray[np.bool_]:
             rho, h = points[..., 0], points[..., 1]
             inside = np.hypot(h, rho - 1.0) < 1.0
-            return (rho >= 0.0) & (inside | ((h >= 0.0) & (_two_arcs(points)[0] <= shortest)))
+            return (rho >= 0.0) & (inside | ((h >= 0.0) & (arcs_to(points)[0] <= shortest)))
 
         # Beyond a full circle the front has crossed the axis for good at t = 3 pi / 2.
-        last = longest if longest < _TURN else 0.75 * _TURN
+        last = longest if longest < TURN else 0.75 * TURN
         rear, inner = two_arcs(shortest), two_arcs(longest)
         return (
-            *_runs(front, 0.0, last, on_this_side),
-            *_runs(circle, shortest, min(longest, np.pi), before_return),
-            *_runs(rear, max(shortest - np.pi, 0.0), 0.5 * shortest, before_return),
-            *_runs(inner, max(longest - _TURN, 0.0), min(longest - np.pi, 0.5 * longest), at_return),
+            *runs(front, 0.0, last, on_this_side),
+            *runs(circle, shortest, min(longest, np.pi), before_return),
+            *runs(rear, max(shortest - np.pi, 0.0), 0.5 * shortest, before_return),
+            *runs(inner, max(longest - TURN, 0.0), min(longest - np.pi, 0.5 * longest), at_return),
         )
 
     def _distance(self, points: FloatArray) -> FloatArray:
         """Return the distance of points, shape (n, 2), from the boundary, shape (n,)."""
         nearest = np.full(len(points), np.inf)
         for curve, first, last in self._pieces:
-            grid = np.linspace(first, last, _GRID)
+            grid = np.linspace(first, last, GRID)
             apart = points[:, None, :] - curve(grid)
             closest = np.argmin(np.einsum("nti,nti->nt", apart, apart), axis=1)
-            lower, upper = grid[np.maximum(closest - 1, 0)], grid[np.minimum(closest + 1, _GRID - 1)]
+            lower, upper = grid[np.maximum(closest - 1, 0)], grid[np.minimum(closest + 1, GRID - 1)]
             for _ in range(_GOLDEN_STEPS):
                 span = _GOLDEN * (upper - lower)
                 left, right = upper - span, lower + span
-                left_is_nearer = _apart(points, curve(left)) < _apart(points, curve(right))
+                left_is_nearer = distances(points, curve(left)) < distances(points, curve(right))
                 lower, upper = np.where(left_is_nearer, lower, left), np.where(left_is_nearer, right, upper)
             for t in (grid[closest], 0.5 * (lower + upper)):
-                nearest = np.minimum(nearest, _apart(points, curve(t)))
+                nearest = np.minimum(nearest, distances(points, curve(t)))
         return nearest
-
-
-def _two_arcs(points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return l2 and l3 of (rho, h) as if both arcs turned forwards; both infinite where D > 3."""
-    rho, h = points[..., 0], points[..., 1]
-    far = np.hypot(h, rho + 1.0)
-    phi = np.arctan2(h, rho + 1.0)
-    delta = np.arccos(np.minimum((far**2 + 3.0) / (4.0 * far), 1.0))
-    gamma = np.arccos(np.clip((5.0 - far**2) / 4.0, -1.0, 1.0))
-    beyond = far > 3.0
-    return (
-        np.where(beyond, np.inf, phi - delta + gamma),
-        np.where(beyond, np.inf, phi + delta + _TURN - gamma),
-    )
-
-
-def _lengths(points: FloatArray) -> FloatArray:
-    """Return l1, l2, l3 of (rho, h), all in units of the bend radius, shape (..., 3)."""
-    rho, h = points[..., 0], points[..., 1]
-    squared = h**2 + (rho - 1.0) ** 2 - 1.0
-    straight = np.sqrt(np.maximum(squared, 0.0))
-    direction = np.arctan2(h, 1.0 - rho)
-    direction = np.where(direction < 0.0, direction + _TURN, direction)
-    first = np.maximum(direction - np.arctan(straight), 0.0) + straight
-    last, again = _two_arcs(points)
-    inside, behind = squared < 0.0, h < 0.0
-    return np.stack(
-        [
-            np.where(inside, np.inf, first),
-            np.where(inside, -np.inf, np.where(behind, np.inf, last)),
-            np.where(behind & ~inside, np.inf, again),
-        ],
-        axis=-1,
-    )
-
-
-def _runs(
-    curve: Callable[[FloatArray], FloatArray],
-    first: float,
-    last: float,
-    counts: Callable[[FloatArray], NDArray[np.bool_]],
-) -> list[_Piece]:
-    """Return the pieces of a curve on which it counts; their ends are bisected."""
-    if last <= first:
-        return []
-    grid = np.linspace(first, last, _GRID)
-    inside = np.concatenate([[False], counts(curve(grid)), [False]])
-    pieces = []
-    changes = np.flatnonzero(inside[1:] != inside[:-1])
-    for start, stop in changes.reshape(-1, 2):
-        begin = grid[0] if start == 0 else _switch(curve, counts, grid[start], grid[start - 1])
-        end = grid[-1] if stop == _GRID else _switch(curve, counts, grid[stop - 1], grid[stop])
-        pieces.append(_Piece(curve, begin, end))
-    return pieces
-
-
-def _switch(
-    curve: Callable[[FloatArray], FloatArray],
-    counts: Callable[[FloatArray], NDArray[np.bool_]],
-    inside: float,
-    outside: float,
-) -> float:
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (inside + outside)
-        if counts(curve(np.asarray(middle))):
-            inside = middle
-        else:
-            outside = middle
-    return inside
-
-
-def _apart(points: FloatArray, others: FloatArray) -> FloatArray:
-    return np.asarray(np.hypot(points[..., 0] - others[..., 0], points[..., 1] - others[..., 1]))

@@ -1,6 +1,18 @@
-"""The independent check: what a shape does, by forward kinematics; it imports no other part of the synthesis."""
+"""The independent check of a shape, by forward kinematics; it imports no other part of the synthesis."""
 
 from synth.synthesis.check.clearances import clear_of_everything, seen_by
-from synth.synthesis.check.verification import Verification, Violation, verify
+from synth.synthesis.check.target_results import TargetResult, joints_reaching, target_results, worst_targets
+from synth.synthesis.check.verification import Verification, verify
+from synth.synthesis.check.violations import Violation
 
-__all__ = ["Verification", "Violation", "clear_of_everything", "seen_by", "verify"]
+__all__ = [
+    "TargetResult",
+    "Verification",
+    "Violation",
+    "clear_of_everything",
+    "joints_reaching",
+    "seen_by",
+    "target_results",
+    "verify",
+    "worst_targets",
+]

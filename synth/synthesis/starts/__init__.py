@@ -3,7 +3,8 @@
 from synth.synthesis.starts.exact_arms import exact_designs, nearest_to_designs
 from synth.synthesis.starts.overlaps import overlaps
 from synth.synthesis.starts.postures import Aims, Postures
-from synth.synthesis.starts.refinement import Refined, level, refine, relative_weights
+from synth.synthesis.starts.refined import Refined, relative_weights
+from synth.synthesis.starts.refinement import level, refine
 from synth.synthesis.starts.screening import estimated_misses
 from synth.synthesis.starts.shapes import ARCS, ARM_LENGTH, Population, in_equal_arcs, into_limits
 from synth.synthesis.starts.start_points import Start, starts

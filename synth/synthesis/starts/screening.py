@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.synthesis.starts.category_offsets import category_offsets
-from synth.synthesis.starts.refinement import relative_weights
+from synth.synthesis.starts.refined import relative_weights
 from synth.synthesis.starts.shapes import Population
 
 if TYPE_CHECKING:

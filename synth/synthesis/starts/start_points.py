@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.synthesis.starts.exact_arms import exact_designs, nearest_to_designs
-from synth.synthesis.starts.refinement import relative_weights
+from synth.synthesis.starts.refined import relative_weights
 from synth.synthesis.starts.screening import screened, shapes_at_random
 from synth.synthesis.starts.shapes import ARM_LENGTH
 from synth.synthesis.starts.thinning import thinned
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.robot import Arm
-    from synth.synthesis.starts.refinement import Refined
+    from synth.synthesis.starts.refined import Refined
     from synth.task import Task
 
 

@@ -20,7 +20,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.synthesis.starts.overlaps import overlaps
-from synth.synthesis.starts.refinement import Refined, cleared, level, refine
+from synth.synthesis.starts.refined import Refined
+from synth.synthesis.starts.refinement import cleared, level, refine
 from synth.synthesis.starts.shapes import ARCS, Population, into_limits
 from synth.task import Objective
 from synth.watch import Watch

@@ -2,11 +2,12 @@
 
 from synth.synthesis.wanted.design import Design
 from synth.synthesis.wanted.displaced import misses_displaced, rotations
-from synth.synthesis.wanted.figures import judged
 from synth.synthesis.wanted.forgiveness import HAND_PLACES, HAND_TURNS, Forgiveness, hand_forgiveness
+from synth.synthesis.wanted.judging import judged
+from synth.synthesis.wanted.motion import Motion
 from synth.synthesis.wanted.ranking import best_of, leaves_no_wish, objective
 from synth.synthesis.wanted.wanted_shapes import wished
-from synth.synthesis.wanted.ways import MOST_MOTIONS, Motion, motions
+from synth.synthesis.wanted.ways import MOST_MOTIONS, motions
 
 __all__ = [
     "HAND_PLACES",

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from synth.robot import Arm
     from synth.synthesis.check import Verification
     from synth.synthesis.wanted.figures import Figures
-    from synth.synthesis.wanted.ways import Motion
+    from synth.synthesis.wanted.motion import Motion
 
 
 @dataclass(frozen=True)

@@ -2,25 +2,12 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from synth.synthesis.check import verify
-from synth.synthesis.wanted.forgiveness import Forgiveness, hand_forgiveness
-from synth.synthesis.wanted.margins import Margins
-from synth.synthesis.wanted.ways import MOST_MOTIONS, routed
-from synth.watch import never
-
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from synth.robot import LinkShape
-    from synth.synthesis.wanted.design import Design
-    from synth.synthesis.wanted.ways import Motion
-    from synth.task import Task
+    from synth.synthesis.wanted.forgiveness import Forgiveness
+    from synth.synthesis.wanted.margins import Margins
 
 
 @dataclass(frozen=True)
@@ -47,41 +34,3 @@ class Figures:
     travel: float
     bend: float
     change: float | None
-
-
-def judged(task: Task, design: Design, is_up: Callable[[], bool] = never) -> Design:
-    """Return a design with its ways and its figures, at the joint angles that suit these best.
-
-    Args:
-        task: The task.
-        design: The design, verified for the task.
-        is_up: Asked whether to leave out the ways of one that misses a target: nobody is told of them.
-    """
-    if design.figures is not None:
-        return design
-    ways: tuple[Motion, ...] = ()
-    if len(task.targets) <= MOST_MOTIONS and (design.verification.found or not is_up()):
-        ways, joints = routed(task, design)
-        if not np.array_equal(joints, design.verification.joints):
-            design = replace(design, verification=verify(task, design.arm, joints, keep=True))
-    arm, check = design.arm, design.verification
-    margins = Margins.of(arm, check.joints, check.clearances)
-    swings = [float(np.ptp(way.joints, axis=0).max()) for way in ways if way.found]
-    figures = Figures(
-        ways_missing=sum(not way.found for way in ways),
-        margins=margins,
-        shortfall=margins.shortfall(Margins.wanted(task.robot)),
-        forgiveness=hand_forgiveness(task, arm, check.joints),
-        largest_swing=max(swings, default=0.0),
-        travel=sum(way.travel for way in ways),
-        bend=arm.shape.bending_energy,
-        change=None if task.current is None else _change(arm.shape, task.current),
-    )
-    return replace(design, ways=ways, figures=figures)
-
-
-def _change(shape: LinkShape, present: LinkShape) -> float:
-    """Return the root mean square distance of a link from another one, m."""
-    share = np.linspace(0.0, 1.0, 50)
-    moved = shape.point_at(share * shape.length) - present.point_at(share * present.length)
-    return math.sqrt(float(np.mean(np.sum(moved**2, axis=1))))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.wanted.figures import judged
+from synth.synthesis.wanted.judging import judged
 from synth.task import Objective
 from synth.watch import never
 

@@ -8,7 +8,7 @@ best are chosen, bent a little at random, led back to the targets, and chosen ag
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,6 @@ import numpy as np
 from synth.robot import Interval
 from synth.synthesis.starts import (
     ARCS,
-    ARM_LENGTH,
     Aims,
     Population,
     Postures,
@@ -25,20 +24,16 @@ from synth.synthesis.starts import (
     exact_designs,
     into_limits,
     nearest_to_designs,
-    overlaps,
     refine,
     relative_weights,
 )
-from synth.synthesis.wanted.forgiveness import misses_after_a_hand
-from synth.synthesis.wanted.margins import Margins, drawn_in
-from synth.synthesis.wanted.ranking import CALM, STEPS, is_content, preferences, preferred
-from synth.synthesis.wanted.ways import MOST_MOTIONS
+from synth.synthesis.wanted.margins import drawn_in
+from synth.synthesis.wanted.pool import Pool, swings_of
+from synth.synthesis.wanted.ranking import CALM, STEPS, is_content
 from synth.task import Objective
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
-
-    from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
     from synth.robot import Arm, Robot
@@ -63,9 +58,7 @@ _PATIENCE, _COUNTS = 3, 4
 # Bent shapes are led beside the targets, by up to this part of the tolerances: else these were of no use. Of
 # tolerances below this, m, there is nothing to be had: such targets are met exactly.
 _BESIDE, _TIGHT = 0.7, 1e-3
-# What a miss may take of its tolerance: the rest is for rounding; and where targets are met exactly.
-_PART_OF_TOLERANCE, _EXACTLY = 0.9, 0.02
-_DISTINCT = 0.03  # m, between link ends with axes of ARM_LENGTH
+_EXACTLY = 0.02  # of its tolerance a miss may take where targets are met exactly
 
 
 def wished(
@@ -100,7 +93,7 @@ def wished(
 
 def _searched(
     task: Task, narrow: Task, known: Sequence[Arm], rng: np.random.Generator, stop: Callable[[], bool]
-) -> _Pool:
+) -> Pool:
     """Return the shapes that are wanted most, with limits drawn in.
 
     While the best leaves ways, margins or calm to wish for, all is begun anew with joint 2 kept in a part of
@@ -114,7 +107,7 @@ def _searched(
     if float(task.tolerances.min()) < _TIGHT and len(pool.table):
         chosen = pool.population.take(pool.distinct()[:_BENT])
         led = refine(narrow, chosen, iterations=_ITERATIONS_AGAIN, is_up=stop)
-        pool = _Pool.of(task, narrow, led.population, stop, _EXACTLY)
+        pool = Pool.of(task, narrow, led.population, stop, _EXACTLY)
     return pool
 
 
@@ -136,7 +129,7 @@ def _bred(
     led: int,
     rng: np.random.Generator,
     stop: Callable[[], bool],
-) -> _Pool:
+) -> Pool:
     """Return the shapes that are wanted most of some random ones and of what bending makes of them."""
     beginnings = _promising(narrow, led, rng).unknowns
     if known:
@@ -144,7 +137,7 @@ def _bred(
         beginnings = np.concatenate([beginnings, varied])
     iterations = _ITERATIONS if known else _ITERATIONS_CALMER
     refined = refine(narrow, Population(narrow.robot, beginnings), iterations=iterations, is_up=stop)
-    pool = _Pool.of(task, narrow, refined.population, stop)
+    pool = Pool.of(task, narrow, refined.population, stop)
     # Where targets are met exactly and fix finitely many surfaces, bending changes nothing that counts more
     # than the bend itself.
     finite = float(task.tolerances.min()) < _TIGHT and exact_designs(narrow) is not None
@@ -158,7 +151,7 @@ def _bred(
         unknowns = _varied(narrow.robot, [pool.population.take(pool.distinct()[:_BENT])], _VARIED, rng)
         bent = Population(narrow.robot, unknowns)
         refined = refine(_beside(narrow, rng), bent, iterations=_ITERATIONS_AGAIN, is_up=stop)
-        pool = pool.joined(_Pool.of(task, narrow, refined.population, stop))
+        pool = pool.joined(Pool.of(task, narrow, refined.population, stop))
     return pool
 
 
@@ -169,7 +162,7 @@ def _promising(task: Task, led: int, rng: np.random.Generator) -> Population:
     order = np.argsort(relative_weights(task) @ misses**2, kind="stable")
     good = rng.permutation(order[:_GOOD])[:_ASKED]
     postures = Postures.nearest(Aims(task.positions, task.robot.joint_limits), shapes.take(good).kinematics)
-    calm = good[np.argsort(_swings(postures.joints).max(axis=1, initial=0.0), kind="stable")]
+    calm = good[np.argsort(swings_of(postures.joints).max(axis=1, initial=0.0), kind="stable")]
     chosen = np.union1d(order[: led - _LED // 2], calm[: _LED // 2])
     if designs := exact_designs(task):
         chosen = np.union1d(chosen, nearest_to_designs(shapes, designs, _PER_DESIGN))
@@ -197,107 +190,3 @@ def _beside(task: Task, rng: np.random.Generator) -> Task:
     room = np.where(task.tolerances < _TIGHT, 0.0, _BESIDE * rng.uniform() * task.tolerances)
     ways *= (room / np.linalg.norm(ways, axis=1))[:, None]
     return replace(task, targets=replace(task.table, positions=task.table.positions + ways))
-
-
-@dataclass(frozen=True, eq=False)
-class _Pool:
-    """Shapes within the tolerances, the most wanted first.
-
-    Attributes:
-        population: The shapes, of shape (N,).
-        table: Rows of `preferences`, shape (N, 6).
-    """
-
-    population: Population
-    table: FloatArray
-
-    @classmethod
-    def of(
-        cls,
-        task: Task,
-        narrow: Task,
-        population: Population,
-        stop: Callable[[], bool],
-        part: float = _PART_OF_TOLERANCE,
-    ) -> _Pool:
-        """Return those of some shapes that meet a task, as far as samples tell.
-
-        Args:
-            task: The task.
-            narrow: The same with limits drawn in.
-            population: The shapes.
-            stop: When it says yes the obstacles are left out: nobody asks for these shapes any more.
-            part: Of each tolerance, that a miss may take.
-        """
-        aims = Aims(task.positions, narrow.robot.joint_limits)
-        postures = Postures.nearest(aims, population.kinematics)
-        within = (np.sqrt(postures.squared) <= part * task.tolerances).all(axis=1)
-        joints = postures.joints
-        within &= _over_floor(task, population, joints)
-        population, joints = population.take(within), joints[within]
-        depth = overlaps(narrow, population, joints, is_up=stop).max(axis=1, initial=0.0)
-        clearance = Margins.wanted(task.robot).clearance
-        clear = depth <= clearance
-        population, joints, depth = population.take(clear), joints[clear], depth[clear]
-        swings = _swings(joints)
-        expected, _ = misses_after_a_hand(
-            aims, task.tolerances, population.kinematics, population.end[1], joints[..., 1]
-        )
-        table = preferences(
-            np.zeros(len(depth)),
-            depth / clearance,
-            swings.max(axis=1, initial=0.0),
-            expected,
-            swings.sum(axis=1),
-            population.bending,
-        )
-        return cls(population, table).sorted()
-
-    def sorted(self) -> _Pool:
-        """Return the same, the most wanted first."""
-        chosen = preferred(self.table)
-        return _Pool(self.population.take(chosen), self.table[chosen])
-
-    def joined(self, other: _Pool) -> _Pool:
-        """Return the shapes of both."""
-        unknowns = np.concatenate([self.population.unknowns, other.population.unknowns])
-        return _Pool(
-            Population(self.population.robot, unknowns), np.concatenate([self.table, other.table])
-        ).sorted()
-
-    def distinct(self) -> NDArray[np.intp]:
-        """Return which shapes differ from all that are wanted more."""
-        frame, position = self.population.end
-        poses = np.hstack([position, ARM_LENGTH * frame[:, :, 0]])
-        apart = np.linalg.norm(poses[:, None] - poses, axis=-1) >= _DISTINCT
-        kept: list[int] = []
-        for index in range(len(poses)):
-            if apart[index, kept].all():
-                kept.append(index)
-        return np.array(kept, dtype=np.intp)
-
-
-def _swings(joints: FloatArray) -> FloatArray:
-    """Return the turns from each target to the next of the joint that turns more, rad, shape (N, n - 1).
-
-    None where there are so many targets that nobody asks for ways between them.
-
-    Args:
-        joints: Joint angles, shape (N, n, 2), rad.
-    """
-    if joints.shape[1] > MOST_MOTIONS:
-        joints = joints[:, :1]
-    return np.asarray(np.abs(np.diff(joints, axis=1)).max(axis=2))
-
-
-def _over_floor(task: Task, population: Population, joints: FloatArray) -> NDArray[np.bool_]:
-    """Return which shapes stay over the floor, link, joint 2 and end effector, at samples of the link."""
-    if task.floor is None:
-        return np.ones(len(joints), dtype=np.bool_)
-    robot, (frame, end) = task.robot, population.end
-    link = population.centreline[:, :, 2].min(axis=1) - 0.5 * robot.link.diameter
-    along = np.array([-robot.tip_offset, robot.d34 - robot.tip_offset])
-    axis = (end[:, 2, None] + along * frame[:, 2, 0, None]).min(axis=1)
-    tip = population.kinematics.each_target().forward(0.0, joints[..., 1])[..., 2].min(axis=1)
-    lowest = np.minimum(np.minimum(link, axis), tip - 0.5 * robot.rigid_link.diameter)
-    return np.asarray(lowest >= task.floor)

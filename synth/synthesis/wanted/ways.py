@@ -6,28 +6,26 @@ each piece is clear is certain, by the bounds of `ArmBody`; that there is no way
 
 from __future__ import annotations
 
-import heapq
 import itertools
-import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
 from synth.checks import refuse_unless
 from synth.robot import ArmBody, turned
-from synth.synthesis.check import seen_by
-from synth.synthesis.solution import joints_reaching
+from synth.synthesis.check import joints_reaching, seen_by
 from synth.synthesis.wanted.design import Design
 from synth.synthesis.wanted.margins import joint_shortfalls
+from synth.synthesis.wanted.motion import Motion, travel_of
+from synth.synthesis.wanted.shortest_path import shortest_path
 from synth.task import Task
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
+    from synth.arrays import FloatArray
     from synth.geometry import Solid
 
 MOST_MOTIONS = 50  # of more targets nobody asks for the ways between them
@@ -40,50 +38,6 @@ _MARGINS = (0.02, 0.008, 0.003)
 _STEP = 0.02  # rad, between postures that are looked at when a way is straightened
 # What a missing way, and a posture with no margin of a joint, are worth in travel, rad: more than any ways.
 _NO_WAY, _CRAMPED = 1e6, 1e3
-
-
-@dataclass(frozen=True, eq=False)
-class Motion:
-    """How the arm gets from one target to the next.
-
-    Attributes:
-        start: Name of the target that it leaves.
-        end: Name of the target that it gets to.
-        joints: Angles (theta1, theta2) that it passes, shape (k, 2), rad, straight in between: two for
-            a straight way, none if no way was found.
-    """
-
-    start: str
-    end: str
-    joints: FloatArray
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "joints", frozen(self.joints))
-
-    @property
-    def found(self) -> bool:
-        """Whether there is a way."""
-        return len(self.joints) > 0
-
-    @property
-    def travel(self) -> float:
-        """Travel of the joint that moves more, rad; 0 if no way was found."""
-        return _travel(self.joints)
-
-    def describe(self) -> str:
-        """Return which way, in degrees."""
-        if not self.found:
-            return f"{self.start} to {self.end}: no way was found that keeps clear"
-        change = np.degrees(self.joints[-1] - self.joints[0])
-        sentence = (
-            f"{self.start} to {self.end}: joint 1 by {change[0]:+z.1f} deg, joint 2 by {change[1]:+z.1f} deg"
-        )
-        if abs(change[0]) > 180.0:
-            sentence += " (the long way round: the short one is closed by the limits of joint 1)"
-        if len(self.joints) > 2:
-            via = ", ".join(f"({a:z.1f}, {b:z.1f})" for a, b in np.degrees(self.joints[1:-1]))
-            sentence += f", by way of {via} deg"
-        return sentence
 
 
 def motions(task: Task, design: Design) -> tuple[Motion, ...]:
@@ -106,7 +60,7 @@ def motions(task: Task, design: Design) -> tuple[Motion, ...]:
 
 def routed(task: Task, design: Design) -> tuple[tuple[Motion, ...], FloatArray]:
     """Return the ways as `motions` does, and the joint angles that they take at each target, (n, 2), rad."""
-    postures = joints_reaching(task, design)
+    postures = joints_reaching(task, design.arm, design.verification)
     ways = _Room(task, design).ways(postures)
     cramped = [_CRAMPED * joint_shortfalls(task.robot, joints) for joints in postures]
     # To each posture of a target the least cost so far, rad, and which postures are taken on the way there.
@@ -129,12 +83,7 @@ def routed(task: Task, design: Design) -> tuple[tuple[Motion, ...], FloatArray]:
 
 def _cost(way: FloatArray) -> float:
     """Return the travel on a way, rad; where there is none, more than any."""
-    return _travel(way) if len(way) else _NO_WAY
-
-
-def _travel(way: FloatArray) -> float:
-    """Return the travel of the joint that moves more, piece by piece, rad."""
-    return float(np.abs(np.diff(way, axis=0)).max(axis=1, initial=0.0).sum())
+    return travel_of(way) if len(way) else _NO_WAY
 
 
 class _Room:
@@ -223,7 +172,7 @@ class _Room:
         grid = np.stack(np.meshgrid(theta1, theta2, indexing="ij"), axis=-1)
         sampled = self._sampled_clearance(theta1[:, None], theta2[None])
         for margin in _MARGINS:
-            nodes = _shortest(sampled > margin, _node(grid, start), _node(grid, end))
+            nodes = shortest_path(sampled > margin, _node(grid, start), _node(grid, end))
             if nodes is None:
                 continue
             way = self._straightened(np.array([start, *(grid[node] for node in nodes), end]), margin)
@@ -281,40 +230,3 @@ def _before_the_joint(body: ArmBody, share: FloatArray) -> NDArray[np.intp]:
 def _node(grid: FloatArray, joints: FloatArray) -> tuple[int, int]:
     nearest = np.unravel_index(np.argmin(np.abs(grid - joints).max(axis=-1)), grid.shape[:2])
     return int(nearest[0]), int(nearest[1])
-
-
-def _shortest(
-    free: NDArray[np.bool_], start: tuple[int, int], end: tuple[int, int]
-) -> list[tuple[int, int]] | None:
-    """Return the shortest path through free nodes of a grid and its diagonals, by Dijkstra's algorithm.
-
-    The ends count as free, and so do their neighbours: the arm gets away from a target as it got there.
-    """
-    free = free.copy()
-    for i, j in (start, end):
-        free[max(i - 1, 0) : i + 2, max(j - 1, 0) : j + 2] = True
-    distance, before = {start: 0.0}, {start: start}
-    queue = [(0.0, start)]
-    while queue:
-        travelled, node = heapq.heappop(queue)
-        if node == end:
-            path = [node]
-            while path[-1] != start:
-                path.append(before[path[-1]])
-            return path[::-1]
-        if travelled > distance[node]:
-            continue
-        for neighbour in _neighbours(node, free):
-            length = travelled + math.hypot(neighbour[0] - node[0], neighbour[1] - node[1])
-            if length < distance.get(neighbour, math.inf):
-                distance[neighbour], before[neighbour] = length, node
-                heapq.heappush(queue, (length, neighbour))
-    return None
-
-
-def _neighbours(node: tuple[int, int], free: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
-    for i, j in itertools.product((-1, 0, 1), repeat=2):
-        neighbour = node[0] + i, node[1] + j
-        inside = 0 <= neighbour[0] < free.shape[0] and 0 <= neighbour[1] < free.shape[1]
-        if (i or j) and inside and free[neighbour]:
-            yield neighbour

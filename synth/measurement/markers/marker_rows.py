@@ -1,0 +1,145 @@
+"""Rows of a file of measured points, CSV or one JSON object a line: cells by column, with their lines."""
+
+from __future__ import annotations
+
+import csv
+import difflib
+import json
+import math
+from typing import TYPE_CHECKING
+
+from synth.errors import InputError, Mistake
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+_MISTAKES_AT_MOST = 10
+
+_MAX_BYTES = 50_000_000
+
+
+UNITS = {"mm": 1000.0, "m": 1.0}  # to divide by
+_OTHERS = ("joint1_deg", "joint2_deg", "frame")
+_COLUMNS = ("marker", *(f"{axis}_{unit}" for unit in UNITS for axis in "xyz"), *_OTHERS)
+
+
+Row = tuple[int, dict[str, object]]
+
+
+def text_of(path: Path, file: str) -> str:
+    """Return the text of a file, or refuse what is none."""
+    try:
+        with path.open("rb") as stream:
+            content = stream.read(_MAX_BYTES + 1)
+    except FileNotFoundError:
+        raise InputError([Mistake("there is no such file", file)]) from None
+    except (OSError, ValueError) as error:
+        raise InputError(
+            [Mistake(f"cannot be read: {getattr(error, 'strerror', None) or error}", file)]
+        ) from None
+    if len(content) > _MAX_BYTES:
+        raise InputError([Mistake(f"is larger than {_MAX_BYTES // 1_000_000} MB", file)])
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError([Mistake("is not a text file in UTF-8", file)]) from None
+    if "\0" in text:
+        raise InputError([Mistake("is not a text file: it holds the character NUL", file)])
+    return text
+
+
+def json_rows(text: str, file: str, *, named: bool = True) -> list[Row]:
+    """Return the rows of JSON objects, one on each line; `named` says whether each names its marker."""
+    rows: list[Row] = []
+    for number, line in enumerate(text.splitlines(), 1):
+        if not line.strip():
+            continue
+        try:
+            row = json.loads(line)
+        except (ValueError, RecursionError):
+            raise InputError([Mistake("is no JSON object on one line", file, number)]) from None
+        if not isinstance(row, dict):
+            raise InputError(
+                [Mistake("must be a JSON object with the keys marker, x_mm, y_mm, z_mm", file, number)]
+            )
+        _check_columns(list(row), file, number, named=named)
+        rows.append((number, row))
+    return rows
+
+
+def csv_rows(text: str, file: str, *, named: bool = True) -> list[Row]:
+    """Return the rows of a CSV file with a header; `named` says whether each names its marker."""
+    lines = csv.reader(text.splitlines())
+    try:
+        table = [
+            (lines.line_num, [cell.strip() for cell in cells])
+            for cells in lines
+            if any(map(str.strip, cells))
+        ]
+    except csv.Error as error:
+        raise InputError([Mistake(f"is no CSV: {error}", file, lines.line_num)]) from None
+    if not table:
+        raise InputError([Mistake("holds no markers", file)])
+    first, header = table[0][0], [cell.lower() for cell in table[0][1]]
+    if not any(cell in _COLUMNS for cell in header):
+        example = "marker,x_mm,y_mm,z_mm" if named else "x_mm,y_mm,z_mm"
+        raise InputError(
+            [
+                Mistake(
+                    f"must begin with a header such as {example}: in which unit are these numbers?",
+                    file,
+                    first,
+                )
+            ]
+        )
+    _check_columns(header, file, first, named=named)
+    mistakes = [
+        Mistake(f"has {len(cells)} cells, and the header {len(header)}", file, number)
+        for number, cells in table[1:]
+        if len(cells) != len(header)
+    ]
+    if mistakes:
+        raise InputError(mistakes[:_MISTAKES_AT_MOST])
+    return [(number, dict(zip(header, cells, strict=True))) for number, cells in table[1:]]
+
+
+def _check_columns(names: list[str], file: str, line: int, *, named: bool) -> None:
+    mistakes = []
+    for name in dict.fromkeys(names):
+        if name not in _COLUMNS:
+            near = difflib.get_close_matches(name, _COLUMNS, 1, 0.5)
+            hint = f"; did you mean {near[0]}?" if near else f"; there are {', '.join(_COLUMNS)}"
+            mistakes.append(Mistake(f"unknown column{hint}", file, line, name[:40]))
+        elif names.count(name) > 1:
+            mistakes.append(Mistake("is there twice", file, line, name))
+    units = [unit for unit in UNITS if any(f"{axis}_{unit}" in names for axis in "xyz")]
+    if not mistakes and len(units) != 1:
+        mistakes.append(
+            Mistake("must have x, y and z in one unit: x_mm,y_mm,z_mm or x_m,y_m,z_m", file, line)
+        )
+    elif not mistakes and not all(f"{axis}_{units[0]}" in names for axis in "xyz"):
+        mistakes.append(Mistake(f"must have all of x_{units[0]}, y_{units[0]} and z_{units[0]}", file, line))
+    if named and "marker" not in names:
+        mistakes.append(Mistake("must name the marker", file, line, "marker"))
+    if mistakes:
+        raise InputError(mistakes)
+
+
+def is_gap(cell: object) -> bool:
+    """Whether a cell holds nothing: a frame in which the marker was not seen."""
+    return (
+        cell is None
+        or (isinstance(cell, str) and cell.strip().lower() in {"", "nan", "null"})
+        or (isinstance(cell, float) and math.isnan(cell))
+    )
+
+
+def number_of(cell: object) -> float | None:
+    """Return the number in a cell, or None if it holds none that is finite."""
+    if isinstance(cell, bool) or not isinstance(cell, str | int | float):
+        return None
+    try:
+        value = float(cell)
+    except (ValueError, OverflowError):
+        return None
+    return value if math.isfinite(value) else None

@@ -1,0 +1,136 @@
+"""Shapes within the tolerances, the most wanted first: many at once, by samples."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.synthesis.starts import (
+    ARM_LENGTH,
+    Aims,
+    Population,
+    Postures,
+    overlaps,
+)
+from synth.synthesis.wanted.forgiveness import misses_after_a_hand
+from synth.synthesis.wanted.margins import Margins
+from synth.synthesis.wanted.ranking import preferences, preferred
+from synth.synthesis.wanted.ways import MOST_MOTIONS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from synth.arrays import FloatArray
+    from synth.task import Task
+
+# What a miss may take of its tolerance: the rest is for rounding.
+_PART_OF_TOLERANCE = 0.9
+_DISTINCT = 0.03  # m, between link ends with axes of ARM_LENGTH
+
+
+@dataclass(frozen=True, eq=False)
+class Pool:
+    """Shapes within the tolerances, the most wanted first.
+
+    Attributes:
+        population: The shapes, of shape (N,).
+        table: Rows of `preferences`, shape (N, 6).
+    """
+
+    population: Population
+    table: FloatArray
+
+    @classmethod
+    def of(
+        cls,
+        task: Task,
+        narrow: Task,
+        population: Population,
+        stop: Callable[[], bool],
+        part: float = _PART_OF_TOLERANCE,
+    ) -> Pool:
+        """Return those of some shapes that meet a task, as far as samples tell.
+
+        Args:
+            task: The task.
+            narrow: The same with limits drawn in.
+            population: The shapes.
+            stop: When it says yes the obstacles are left out: nobody asks for these shapes any more.
+            part: Of each tolerance, that a miss may take.
+        """
+        aims = Aims(task.positions, narrow.robot.joint_limits)
+        postures = Postures.nearest(aims, population.kinematics)
+        within = (np.sqrt(postures.squared) <= part * task.tolerances).all(axis=1)
+        joints = postures.joints
+        within &= _over_floor(task, population, joints)
+        population, joints = population.take(within), joints[within]
+        depth = overlaps(narrow, population, joints, is_up=stop).max(axis=1, initial=0.0)
+        clearance = Margins.wanted(task.robot).clearance
+        clear = depth <= clearance
+        population, joints, depth = population.take(clear), joints[clear], depth[clear]
+        swings = swings_of(joints)
+        expected, _ = misses_after_a_hand(
+            aims, task.tolerances, population.kinematics, population.end[1], joints[..., 1]
+        )
+        table = preferences(
+            np.zeros(len(depth)),
+            depth / clearance,
+            swings.max(axis=1, initial=0.0),
+            expected,
+            swings.sum(axis=1),
+            population.bending,
+        )
+        return cls(population, table).sorted()
+
+    def sorted(self) -> Pool:
+        """Return the same, the most wanted first."""
+        chosen = preferred(self.table)
+        return Pool(self.population.take(chosen), self.table[chosen])
+
+    def joined(self, other: Pool) -> Pool:
+        """Return the shapes of both."""
+        unknowns = np.concatenate([self.population.unknowns, other.population.unknowns])
+        return Pool(
+            Population(self.population.robot, unknowns), np.concatenate([self.table, other.table])
+        ).sorted()
+
+    def distinct(self) -> NDArray[np.intp]:
+        """Return which shapes differ from all that are wanted more."""
+        frame, position = self.population.end
+        poses = np.hstack([position, ARM_LENGTH * frame[:, :, 0]])
+        apart = np.linalg.norm(poses[:, None] - poses, axis=-1) >= _DISTINCT
+        kept: list[int] = []
+        for index in range(len(poses)):
+            if apart[index, kept].all():
+                kept.append(index)
+        return np.array(kept, dtype=np.intp)
+
+
+def swings_of(joints: FloatArray) -> FloatArray:
+    """Return the turns from each target to the next of the joint that turns more, rad, shape (N, n - 1).
+
+    None where there are so many targets that nobody asks for ways between them.
+
+    Args:
+        joints: Joint angles, shape (N, n, 2), rad.
+    """
+    if joints.shape[1] > MOST_MOTIONS:
+        joints = joints[:, :1]
+    return np.asarray(np.abs(np.diff(joints, axis=1)).max(axis=2))
+
+
+def _over_floor(task: Task, population: Population, joints: FloatArray) -> NDArray[np.bool_]:
+    """Return which shapes stay over the floor, link, joint 2 and end effector, at samples of the link."""
+    if task.floor is None:
+        return np.ones(len(joints), dtype=np.bool_)
+    robot, (frame, end) = task.robot, population.end
+    link = population.centreline[:, :, 2].min(axis=1) - 0.5 * robot.link.diameter
+    along = np.array([-robot.tip_offset, robot.d34 - robot.tip_offset])
+    axis = (end[:, 2, None] + along * frame[:, 2, 0, None]).min(axis=1)
+    tip = population.kinematics.each_target().forward(0.0, joints[..., 1])[..., 2].min(axis=1)
+    lowest = np.minimum(np.minimum(link, axis), tip - 0.5 * robot.rigid_link.diameter)
+    return np.asarray(lowest >= task.floor)

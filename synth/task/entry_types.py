@@ -1,0 +1,77 @@
+"""What single entries of task and robot files may be: numbers in ranges, names, pairs."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, TypeVar
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+)
+
+from synth.checks import told_apart, wrong_name
+
+ONE, RANGE, TEXT, MAPPING = "<one>", "<range>", "<text>", "<mapping>"  # tags of unions, never keys
+SURFACES_TO_COME = ("sphere", "plane", "torus", "mesh")
+SMALLEST = 1e-9
+LARGEST = 1e6
+
+
+def _in_order(limits: list[float]) -> list[float]:
+    if limits[0] > limits[1]:
+        raise ValueError(f"must run from low to high, but is [{', '.join(told_apart(*limits))}]")
+    return limits
+
+
+def _within_a_turn(limits: list[float]) -> list[float]:
+    if limits[1] - limits[0] > 360:
+        wide, _ = told_apart(limits[1] - limits[0], 360.0)
+        raise ValueError(f"must be at most 360 degrees wide, but is {wide}")
+    return limits
+
+
+def _one_line(text: str) -> str:
+    if wrong := wrong_name(text):
+        raise ValueError(wrong)
+    return text
+
+
+def without_case(word: Any) -> Any:
+    """Return a fixed word in small letters, as the format has it."""
+    return word.lower() if isinstance(word, str) else word
+
+
+def absent() -> Any:
+    """Return the value of a key that was not written; to write null is a mistake all the same."""
+    return None
+
+
+_T = TypeVar("_T")
+Pair = Annotated[list[_T], Field(min_length=2, max_length=2), AfterValidator(_in_order)]
+Name = Annotated[str, AfterValidator(_one_line)]
+LengthUnit = Annotated[Literal["mm", "cm", "m"], BeforeValidator(without_case)]
+Coordinate = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
+Position = Annotated[list[Coordinate], Field(min_length=3, max_length=3)]
+Positive = Annotated[float, Field(ge=SMALLEST, le=LARGEST)]
+Angle = Annotated[float, Field(ge=-720, le=720)]
+AngleRange = Annotated[Pair[Angle], AfterValidator(_within_a_turn)]
+PositiveOrRange = Annotated[
+    Annotated[Positive, Tag(ONE)] | Annotated[Pair[Positive], Tag(RANGE)],
+    Discriminator(lambda value: RANGE if isinstance(value, list) else ONE),
+]
+
+
+def ends(value: float | list[float]) -> tuple[float, float]:
+    """Return the ends of a `PositiveOrRange`; one number is both."""
+    return (value[0], value[1]) if isinstance(value, list) else (value, value)
+
+
+class Strict(BaseModel):
+    """Base of all entries: no unknown key, no silent conversion, no NaN."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
