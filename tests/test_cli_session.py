@@ -55,7 +55,7 @@ def test_a_sheet_that_cannot_be_drawn_costs_no_answer(tmp_path, error):
     ("function", "keeps"),
     [
         ("synth.synthesis.starts.screening.estimated_misses", False),
-        ("synth.synthesis.search.message", True),
+        ("synth.synthesis.run.message", True),
         ("synth.guide.text.summary_text", True),
         ("synth.export.files.solution_to_json", None),
         ("synth.task.reading.load_task", None),
@@ -188,7 +188,7 @@ def test_a_disk_that_filled_up_costs_the_files_but_not_the_words(tmp_path):
     ("module", "function"),
     [
         ("synth.task.reading", "load_task"),
-        ("synth.synthesis.search", "why_impossible"),
+        ("synth.synthesis.run", "why_impossible"),
         ("synth.export.files", "draw_sheet"),
     ],
 )

@@ -1,6 +1,5 @@
 """Nearest realisable distances, misprints, samples, the link: laws, on planted and on published data."""
 
-import ast
 from dataclasses import replace
 from pathlib import Path
 
@@ -263,16 +262,3 @@ def test_numbers_that_make_no_sense_at_all_are_still_answered():
     assert inspection.samples is None
     assert inspection.spreads == {}
     assert inspection_text(inspection)
-
-
-def test_cvxpy_lives_in_one_file():
-    package = ROOT / "synth"
-    users = set()
-    for path in package.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text())):
-            names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
-            if isinstance(node, ast.ImportFrom):
-                names = [node.module or ""]
-            if any(name.split(".")[0] == "cvxpy" for name in names):
-                users.add(path.relative_to(package).as_posix())
-    assert users == {"measurement/relaxation.py"}

@@ -10,7 +10,7 @@ from sampled_shapes import noisy_task
 from synth.synthesis import Status, all_targets, solve
 from synth.synthesis.all_targets import verified_in_time
 from synth.synthesis.check.verification import verify
-from synth.synthesis.search import Search
+from synth.synthesis.run import Run
 from synth.synthesis.starts.refinement import refine
 from synth.synthesis.starts.shapes import Population
 from synth.watch import Watch
@@ -205,9 +205,9 @@ def test_with_time_for_all_targets_all_are_verified(seconds_each):
 def test_a_shape_seen_with_some_targets_is_told_as_that(seconds_each):
     task, _ = scanned(9000, tolerance=20e-3)
     watch = Watch(3000.0, clock=seconds_each)
-    search = Search(task, task_part(task), 0, watch, 0)
-    search.run()
-    solution = search.solution()
+    run = Run(task, task_part(task), 0, watch, 0)
+    run.search.run()
+    solution = run.solution()
     assert solution.status is Status.LIMIT
     assert not solution.found
     assert len(solution.task.targets) == len(solution.best.verification.misses) < 9000

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from synth.synthesis.arguments import checked_task
 from synth.synthesis.many_targets import part_of
-from synth.synthesis.search import ALTERNATIVES, Search
+from synth.synthesis.run import Run
+from synth.synthesis.search import ALTERNATIVES
 from synth.watch import Watch
 
 if TYPE_CHECKING:
@@ -65,14 +66,14 @@ def solve(
         time_limit=time_limit,
         is_up=watch.is_up,
     )
-    search = Search(task, part_of(task, seed), seed, watch, alternatives)
+    run = Run(task, part_of(task, seed), seed, watch, alternatives)
     near = warm_start.designs if warm_start is not None and warm_start.task.robot == task.robot else ()
-    with search.kept(), watch.keeping_back(search.kept_back):
-        if not search.follow(near):
-            search.run()
+    with run.kept(), watch.keeping_back(run.kept_back):
+        if not run.search.follow(near):
+            run.search.run()
         if prove:
-            search.prove()
-    return search.solution()
+            run.prove()
+    return run.solution()
 
 
 def follow(
@@ -92,8 +93,8 @@ def follow(
         seed: As for `solve`.
         watch: Says when to end with what there is.
     """
-    search = Search(task, part_of(task, seed), seed, watch or Watch())
-    with search.kept(), search.watch.keeping_back(search.kept_back):
-        if not search.follow(designs) and starts:
-            search.run(starts)
-    return search.solution()
+    run = Run(task, part_of(task, seed), seed, watch or Watch())
+    with run.kept(), run.watch.keeping_back(run.kept_back):
+        if not run.search.follow(designs) and starts:
+            run.search.run(starts)
+    return run.solution()

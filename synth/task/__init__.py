@@ -1,6 +1,5 @@
 """The task: what is asked, and how it is read from a file."""
 
-from synth.robot import BasePose
 from synth.task.entry_types import (
     LARGEST,
     MAPPING,
@@ -28,7 +27,6 @@ __all__ = [
     "MAPPING",
     "PER_METRE",
     "TEXT",
-    "BasePose",
     "LengthUnit",
     "Name",
     "Objective",

@@ -5,7 +5,7 @@ Ranges are wide: they keep out slips (a unit mistaken, a digit too many) and wha
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from pydantic import (
     BeforeValidator,
@@ -29,9 +29,7 @@ from synth.task.entry_types import (
     without_case,
 )
 from synth.task.model import Objective, Topology
-
-if TYPE_CHECKING:
-    from synth.task.robot_schema import RobotEntry
+from synth.task.robot_schema import RobotEntry  # noqa: TC001 - pydantic reads the annotation
 
 
 class BaseEntry(Strict):

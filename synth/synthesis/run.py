@@ -1,0 +1,182 @@
+"""One run of `solve`: a search, a proof, and what both are worth, in order and in words."""
+
+from __future__ import annotations
+
+import math
+import traceback
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.errors import in_a_line
+from synth.synthesis.all_targets import WholeTask, for_all_targets, verified_in_time
+from synth.synthesis.bound import why_impossible
+from synth.synthesis.message import message, why_no_better
+from synth.synthesis.present_shape import changing_little
+from synth.synthesis.proving import Certifier
+from synth.synthesis.search import ALTERNATIVES, Search
+from synth.synthesis.solution import Solution, Status
+from synth.synthesis.wanted import Design, best_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from synth.synthesis.bound import Bound
+    from synth.task import Task
+    from synth.watch import Watch
+
+_PROOF_TIME = 60.0  # s
+_PROVEN_IN_TIME = 50_000  # targets: whether each of more is within reach takes a second or longer
+# So many targets are looked at in the time of the search for a part of them; of all the time it is left some.
+_AS_LONG, _LEAST_SEARCH = 30_000, 0.2
+
+
+@dataclass
+class Run:
+    """One run of `solve`.
+
+    Attributes:
+        task: The task.
+        part: The same with the part of its targets that is searched with.
+        seed: Seed of the search.
+        watch: Its time.
+        alternatives: As for `solve`.
+        complete: Whether the search came to its end; a proof may be cut short all the same.
+        bound: What was proven.
+        broke_off: What broke that nobody foresaw.
+        notes: What else is to be said.
+    """
+
+    task: Task
+    part: Task
+    seed: int
+    watch: Watch
+    alternatives: int = ALTERNATIVES
+    complete: bool = False
+    bound: Bound | None = None
+    broke_off: Exception | None = None
+    notes: list[str] = field(default_factory=list)
+
+    @contextmanager
+    def kept(self) -> Iterator[None]:
+        """Keep what was found so far where something breaks that nobody foresaw."""
+        try:
+            yield
+        except Exception as error:
+            if error is self.watch.raised:  # not ours
+                raise
+            self.broke_off = self.broke_off or error
+
+    @cached_property
+    def search(self) -> Search:
+        """The search, with the shapes so far."""
+        return Search(self.part, self.seed, self.watch, lambda: bool(self._impossible), self.alternatives)
+
+    @cached_property
+    def _impossible(self) -> tuple[str, ...]:
+        # What proves that a part is out of reach proves it of all, and is sooner done.
+        limited = self.watch.remaining < math.inf and len(self.task.targets) > _PROVEN_IN_TIME
+        return why_impossible(self.part if limited else self.task)
+
+    @property
+    def kept_back(self) -> float:
+        """Which share of the time the search leaves for looking at all targets."""
+        count = len(self.task.targets)
+        return 0.0 if self.part is self.task else min(count / (count + _AS_LONG), 1.0 - _LEAST_SEARCH)
+
+    def prove(self) -> None:
+        """Bound how little any shape can miss, unless the search was stopped already."""
+        if self.watch.interrupted:
+            self.notes.append("nothing was proven: the search was stopped before")
+            return
+        self.complete = True
+        watch = self.watch.within(_PROOF_TIME)
+        certifier = Certifier(
+            self.part,
+            float(self.task.tolerances.min()),
+            self.search.polishing.designs,
+            self.search.polishing.keep,
+            watch,
+            self.seed,
+        )
+        with self.watch.on("proving"):
+            self.bound = certifier.certificate()
+        if watch.interrupted:
+            self.notes.append("the proof was stopped early: more time may prove more")
+
+    def _bound_for(self, designs: tuple[Design, ...]) -> Bound | None:
+        """Return the bound with what was found for all targets: that of a part holds for all of them."""
+        if self.bound is None or self.part is self.task:
+            return self.bound
+        relative = [float(np.max(d.verification.misses / self.task.tolerances)) for d in designs]
+        best = self.bound.tightest_tolerance * min(relative, default=math.inf)
+        return replace(self.bound, best_found=best)
+
+    def solution(self) -> Solution:
+        """Rank what was found and say what it is worth."""
+        whole = WholeTask(self.task)
+        with self.kept():
+            known = [
+                *self.search.polishing.designs,
+                *changing_little(self.part, self.search.polishing.designs, self.seed, self.watch),
+            ]
+            whole = self._whole(best_of(self.part, known, self.watch.is_up))
+        if self.broke_off is not None and not whole.designs:
+            with self.kept():
+                for one in best_of(self.part, self.search.polishing.designs)[:1]:
+                    seen, design = verified_in_time(self.task, one.arm, self.watch)
+                    whole = WholeTask(seen, (design,) if design.verification.possible else ())
+        task, designs = whole.task, whole.designs
+        status: Status = Status.FAILED
+        reasons: tuple[str, ...] = ()
+        with self.kept():
+            status, reasons = self._verdict(whole)
+        words = status.sentence
+        with self.kept():
+            words = message(task, status, designs, (*self._why_broken(), *reasons))
+        return Solution(
+            task,
+            status,
+            words,
+            (*self._why_broken(), *reasons),
+            self.seed,
+            designs,
+            self.search.starts,
+            self.watch.timing(),
+            self._bound_for(designs),
+            notes=(*self.notes, *filter(None, [whole.note])),
+            breakdown="".join(traceback.format_exception(self.broke_off)) if self.broke_off else "",
+        )
+
+    def _why_broken(self) -> tuple[str, ...]:
+        return () if self.broke_off is None else (f"the search broke off: {in_a_line(self.broke_off)}",)
+
+    def _whole(self, designs: tuple[Design, ...]) -> WholeTask:
+        """Return designs for a part of the targets as designs for all."""
+        if self.part is self.task:
+            return WholeTask(self.task, designs)
+        whole = for_all_targets(self.task, designs, self.seed, self.watch)
+        self.search.polishing.blocked.extend(whole.blocked)
+        return whole
+
+    def _verdict(self, whole: WholeTask) -> tuple[Status, tuple[str, ...]]:
+        """Return how the search ended, and why it found no more, as far as that is known."""
+        designs = whole.designs
+        if designs and designs[0].verification.found:
+            return Status.FOUND, ()
+        if self.broke_off is not None:
+            return Status.FAILED, ()
+        if self._impossible:
+            return Status.PROVEN_IMPOSSIBLE, self._impossible
+        if self.bound is not None and self.bound.excludes:
+            return Status.PROVEN_IMPOSSIBLE, (self.bound.sentence,)
+        if self.search.polishing.breakdowns and not (
+            self.search.polishing.designs or self.search.polishing.blocked
+        ):
+            return Status.FAILED, tuple(self.search.polishing.breakdowns[:1])
+        cut_short = self.watch.interrupted and not self.complete
+        status = Status.LIMIT if cut_short or whole.unseen else Status.BEST_EFFORT
+        return status, why_no_better(self.task, designs, self.search.polishing.blocked)
