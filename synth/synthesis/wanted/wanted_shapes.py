@@ -46,6 +46,7 @@ _SHAPES, _LED, _GOOD, _ASKED = 5_000, 60, 500, 200
 # parts lie, 0 at the beginning of the range, 1 at its end.
 _LED_CALMER, _ITERATIONS_CALMER = 300, 30
 _PARTS = (0.25, 0.75, 0.5, 0.0, 1.0)
+_FEW_TARGETS = 8  # that are moved to one after the other
 _FROM_KNOWN = 20  # bent ones of those that are known
 _PER_DESIGN = 3  # shapes looked at near each exact design, where there are any
 _FAR = 0.3  # m; misses are compared up to here
@@ -100,7 +101,7 @@ def _searched(
     its range, where no swing can be large: calm shapes are too rare to be met by chance.
     """
     pool = _bred(task, narrow, known, _LED, rng, stop)
-    for calmer in _calmer(narrow) if task.current is None else ():  # else the nearest to it is wanted
+    for calmer in _calmer(narrow):
         if stop() or not len(pool.table) or is_content(pool.table[0]):
             break
         pool = pool.joined(_bred(task, calmer, (), _LED_CALMER, rng, stop))
@@ -112,7 +113,12 @@ def _searched(
 
 
 def _calmer(task: Task) -> Iterator[Task]:
-    """Yield the same with joint 2 kept in one part of its range after another, and twice as it is."""
+    """Yield the same with joint 2 kept in one part of its range after another, and twice as it is.
+
+    None where the nearest to the present shape is wanted, nor for many targets: points of a scan have no order.
+    """
+    if task.current is not None or len(task.targets) > _FEW_TARGETS:
+        return
     limits = task.robot.joint_limits
     spare = max(limits.second.upper - limits.second.lower - CALM, 0.0)
     for part in _PARTS:
