@@ -110,7 +110,7 @@ def _tried(task: Task, design: Design, position: float, direction: float) -> tup
 
 
 def tilt_rate(arm: Arm, target: FloatArray, joints: FloatArray) -> float:
-    """Return by how much a target's miss grows with a tilt of axis 2 in the worst direction, m/rad.
+    """Return the rate at which a target's miss grows with a tilt of axis 2 in the worst direction, m/rad.
 
     At joint 1 = 0, a tilt w (rad, across axis 2) about the link's end p moves P5 by w x (P5 - p). Of
     this only the part along the miss counts, n = (P5 - target) / |P5 - target|, because the joints are

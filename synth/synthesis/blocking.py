@@ -1,6 +1,6 @@
 """What blocks a task that cannot be met, and what would release it: found by relaxing each limit in turn.
 
-A limit blocks if the task is met once that limit alone is relaxed far enough; by how much is then found by
+A limit blocks if the task is met once that limit alone is relaxed far enough; the amount is then found by
 tightening it again, halving after halving, each time with a shape that is verified. So every release is
 certain to do; that a smaller one would not is not certain, nor that a limit that is not named could not.
 """
@@ -54,7 +54,7 @@ def explain(
     Args:
         solution: What a synthesis found; of one that found every target nothing blocks.
         time_limit: Time after which what is known so far is returned, s.
-        stop: Asked many times a second; when it says yes, what is known so far is returned.
+        stop: Polled many times a second; return True to stop with what is known so far.
         progress: Told of each limit that is looked at, and many times a second that it goes on.
 
     Returns:
@@ -155,7 +155,7 @@ def _released(limit: Limit, solution: Solution, watch: Watch) -> Release | None:
 
 
 def _needed(limit: Limit, design: Design, most: float, watch: Watch) -> float:
-    """Return by how much a limit has to give way for one shape, infinite if that does not help it."""
+    """Return the amount by which a limit has to give way for one shape, infinite if that does not help it."""
     if not design.verification.found:
         return math.inf
 
@@ -176,7 +176,7 @@ def _needed(limit: Limit, design: Design, most: float, watch: Watch) -> float:
 
 
 def _base_moved(solution: Solution, watch: Watch) -> Release | None:
-    """Move the base by what targets are missed on average, again and again, then back as far as may be.
+    """Move the base by what targets are missed on average, again and again, then back as far as possible.
 
     With its joints as they are, an arm whose base moves takes the end effector along.
     """

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 
 def changing_little(task: Task, designs: Sequence[Design], seed: int, watch: Watch) -> list[Design]:
-    """Return the shapes found, bent again: to the same workspace, as near to the present one as may be.
+    """Return the shapes found, bent again: to the same workspace, as near to the present one as possible.
 
-    Joint 1 takes up by how much the link is turned about axis 1, if its limits allow.
+    Joint 1 takes up the angle by which the link is turned about axis 1, if its limits allow.
 
     Args:
         task: The task; there are none if it names no present shape.

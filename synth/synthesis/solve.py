@@ -46,7 +46,7 @@ def solve(
             best. 0 gives the first shape, in half the time, wherever it leans.
         prove: Whether to bound how little any shape can miss; that takes seconds, a minute at most.
         time_limit: Time after which the best shape so far is returned, s.
-        stop: Asked many times a second; when it says yes, the best shape so far is returned.
+        stop: Polled many times a second; return True to stop with the best shape so far.
         progress: Told of each step: of the search for start points, of each one polished, of the proof.
 
     Returns:

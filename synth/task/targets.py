@@ -22,7 +22,7 @@ DEFAULT_TOLERANCE = 1e-3  # m: twice the error of the motion capture that measur
 @compared_by_value
 @dataclass(frozen=True, eq=False)
 class PointTarget:
-    """A point that the end effector shall reach: one kind of target.
+    """A point that the end effector must reach: one kind of target.
 
     Attributes:
         name: How the result speaks of it.

@@ -36,7 +36,7 @@ def draw_inspection(inspection: Inspection, file_format: str = "pdf") -> bytes:
     Returns:
         The file's content, the same for the same inspection: it bears no date.
     """
-    import matplotlib as mpl  # noqa: PLC0415 - half a second, which only who draws shall pay
+    import matplotlib as mpl  # noqa: PLC0415 - half a second, paid only when something is drawn
     from matplotlib.figure import Figure  # noqa: PLC0415
 
     content = io.BytesIO()

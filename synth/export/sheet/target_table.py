@@ -1,4 +1,4 @@
-"""The table of targets on the sheet: what is missed by how much, and the joint angles where that helps."""
+"""The table of targets on the sheet: the misses, and the joint angles where that helps."""
 
 from __future__ import annotations
 

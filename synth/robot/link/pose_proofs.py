@@ -113,7 +113,7 @@ class _Tangents:
         return LinkReach(self.link)
 
     def shortfall(self, share: float = 0.0) -> float:
-        """Return by how much every link surely misses the position, m; 0 if that is not proven.
+        """Return the least by which every link surely misses the position, m; 0 if that is not proven.
 
         Infinite where no link has the direction.
 
@@ -215,7 +215,7 @@ def _spread(count: int) -> FloatArray:
 
 
 def _too_little(verb: str, needed: float, limit: float, unit: Unit, what: str = "") -> str:
-    """Return by how much a limit is too little, with as many digits as tell the two numbers apart."""
+    """Return the amount by which a limit is too little, with as many digits as tell the two numbers apart."""
     more, most = told_apart(needed, limit, unit)
     symbol = unit.symbol
     return f"the link would have to {verb} more than {more} {symbol}{what}; {most} {symbol} is its limit"

@@ -84,7 +84,7 @@ def shared_nlp(structure: Structure, arcs: int, near: bool, thread: int) -> Synt
 
     A solver holds the iterates of its run, and two threads in one solver crash the interpreter. So the
     calling thread, `threading.get_ident()`, is part of the key: each thread has programs of its own.
-    Nothing is remembered from one solve to the next; it only saves the time to build the same again.
+    Nothing is remembered from one solve to the next; it only saves the time to build it anew.
     """
     del thread
     return SynthesisNlp(structure, arcs, near=near)

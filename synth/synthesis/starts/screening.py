@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 _SHAPES = 20_000
-# Misses are only compared up to here, m: beyond, a shape is far off and by how much says little.
+# Misses are only compared up to here, m: beyond, a shape is far off, and the amount says little.
 _FAR = 0.3
 
 

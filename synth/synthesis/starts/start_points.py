@@ -125,7 +125,7 @@ class _Distinct:
         self._kinds = Counter[float]()
 
     def of(self, refined: Refined) -> Iterator[Start]:
-        """Yield starts in the order of their costs, m^2, those aside that are nearly one yielded before."""
+        """Yield starts in the order of their costs, m^2, except those that are nearly one yielded before."""
         population, base, yielded = refined.population, self._task.base, 0
         frame, position = population.end
         poses = np.hstack([position, ARM_LENGTH * frame[:, :, 0]])

@@ -20,7 +20,7 @@ _LOOKED_AT = 200_000
 def thinned(task: Task, count: int, rng: np.random.Generator) -> Task:
     """Return a task with a part of its targets, or the task itself if they are few.
 
-    Half of the part is spread as far apart as may be, because only outlying targets show where joint 1 must
+    Half of the part is spread as far apart as possible, because only outlying targets show where joint 1 must
     not have its dead zone; the other half is random, because the outlying ones of a scan are its outliers.
 
     Args:

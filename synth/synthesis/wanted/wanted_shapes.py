@@ -74,7 +74,7 @@ def wished(
         task: The task.
         known: Shapes of equal arcs that reach the targets already.
         seed: Seed of the random shapes.
-        stop: Asked after each step; when it says yes, the search ends.
+        stop: Polled after each step; return True to end the search.
 
     Yields:
         The robot in the shape, and the joint angles at each target, shape (n, 2), rad.
