@@ -48,6 +48,10 @@ class Interval:
         """The midpoint of the interval."""
         return 0.5 * (self.lower + self.upper)
 
+    def nearest(self, value: float) -> float:
+        """Return the number of the interval that is nearest to a value."""
+        return min(max(value, self.lower), self.upper)
+
     def contains(self, value: float, slack: float = 0.0) -> bool:
         """Whether `value` lies in the interval widened by `slack` at both ends."""
         return self.lower - slack <= value <= self.upper + slack

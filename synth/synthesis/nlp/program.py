@@ -13,8 +13,9 @@ Unknowns, in metres and radians but for the curvatures, which are in units of th
     curvature   (kx, ky) of each of the equal arcs             2 m
     length      of the link                                    1
     s           s13, s14, s23, s24                             4
-    rigid       s35, s45, and the circle of P5, where free     0 or 4
-    joints      theta1, theta2 of each target                  2 n
+    s35, s45    of the rigid link, where it is free            0 or 2
+    from_p3     and radius: the circle of P5, likewise         0 or 2
+    theta1      of each target, and theta2                     2 n
     miss        vector from each target to P5                  3 n
     overlap     depth in obstacles allowed at each target      n + 1, where planes are given
     worst       largest weighted (miss / tolerance)^2          1, for the minimax objective
@@ -36,7 +37,7 @@ import numpy as np
 from synth.synthesis.nlp.arm import SymbolicArm
 from synth.synthesis.nlp.blocks import Constraints, Unknowns
 from synth.synthesis.nlp.ipopt import Ipopt
-from synth.synthesis.nlp.packing import pack, unpack
+from synth.synthesis.nlp.packing import packed, unpacked
 from synth.task import Objective
 
 if TYPE_CHECKING:
@@ -104,7 +105,6 @@ class SynthesisNlp:
         self, structure: Structure, arcs: int, planes: Sequence[Separation] = (), *, near: bool = False
     ) -> None:
         count = structure.count
-        self._arcs = arcs
         self._overlaps = len(planes) and count + 1
         x, g = Unknowns(), Constraints()
         positions = ca.SX.sym("positions", count, 3)
@@ -128,6 +128,7 @@ class SynthesisNlp:
             misses = ca.sum1(weighted)
         objective = misses + _GENTLENESS * arm.bending_energy + steepest * ca.sum1(overlap)
         parameters = ca.vertcat(ca.vec(positions), weights, floor, steepest)
+        self._x = x
         self._ipopt = Ipopt(x, g, parameters, objective, near=near, nearly_clear=bool(planes))
 
     def solve(self, task: Task, start: Arm, joints: FloatArray, watch: Watch | None = None) -> NlpAnswer:
@@ -150,9 +151,9 @@ class SynthesisNlp:
         floor, steepest = task.floor or 0.0, 2.0 * _LARGE_MISS * _OVERLAP_UNIT * float(weights.max())
         parameters = np.concatenate([task.positions.T.ravel(), weights, [floor, steepest]])
         values, status, iterations = self._ipopt.solve(
-            pack(task, start, joints, self._overlaps, weights), parameters, watch
+            self._x.vector_of(packed(task, start, joints, self._overlaps, weights)), parameters, watch
         )
-        arm, found_joints = unpack(task, values, self._arcs)
+        arm, found_joints = unpacked(task, self._x.by_name(values))
         return NlpAnswer(arm, found_joints, status, iterations)
 
 

@@ -34,10 +34,9 @@ class Refined:
     @classmethod
     def joined(cls, parts: list[Refined]) -> Refined:
         """Return the shapes of all parts, in order."""
-        unknowns = np.concatenate([part.population.unknowns for part in parts])
         joints = np.concatenate([part.joints for part in parts])
         cost = np.concatenate([part.cost for part in parts])
-        return cls(Population(parts[0].population.robot, unknowns), joints, cost)
+        return cls(Population.joined([part.population for part in parts]), joints, cost)
 
     def take(self, chosen: NDArray[np.intp]) -> Refined:
         """Return some of the shapes."""

@@ -12,6 +12,8 @@ from synth.arrays import FloatArray, frozen
 from synth.robot import ArcChains, Arm, BasePose, Kinematics, LinkShape, chain_end, chain_points
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from synth.robot import Interval, Robot
@@ -23,6 +25,8 @@ _LEAST_RADIUS = 1e-3  # m; with P3, P4, P5 in line the radius has no derivative
 # An axis 1 rad off puts P5 about this far off, m.
 ARM_LENGTH = 0.5
 ARCS = 4  # equal arcs of a link: eight curvatures and a length for the five numbers of an end pose
+# The columns of the unknowns; d35 and d45 are there where the rigid link is free.
+CURVATURES, LENGTH, _D35, _D45 = slice(0, 2 * ARCS), 2 * ARCS, 2 * ARCS + 1, 2 * ARCS + 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,13 +72,13 @@ class Population:
     @property
     def curvatures(self) -> FloatArray:
         """Curvatures of the arcs, shape (..., ARCS, 2), 1/m."""
-        scaled = self.unknowns[..., : 2 * ARCS].reshape(*self.unknowns.shape[:-1], ARCS, 2)
+        scaled = self.unknowns[..., CURVATURES].reshape(*self.unknowns.shape[:-1], ARCS, 2)
         return np.asarray(scaled * self.robot.link.max_curvature)
 
     @property
     def length(self) -> FloatArray:
         """Length of the link, shape (...), m."""
-        return self.unknowns[..., 2 * ARCS]
+        return self.unknowns[..., LENGTH]
 
     @property
     def rigid_links(self) -> tuple[FloatArray, FloatArray]:
@@ -82,7 +86,7 @@ class Population:
         rigid = self.robot.rigid_link
         if rigid.is_fixed:
             return np.full(self.length.shape, rigid.d35.lower), np.full(self.length.shape, rigid.d45.lower)
-        return self.unknowns[..., -2], self.unknowns[..., -1]
+        return self.unknowns[..., _D35], self.unknowns[..., _D45]
 
     @property
     def bending(self) -> FloatArray:
@@ -105,7 +109,7 @@ class Population:
         """
         robot, link, root = self.robot, self.robot.link, np.sqrt(ARCS)
         share = root * (self.length / link.length.middle - 1.0)
-        ends = ArcChains(link, ARCS).ends(np.column_stack([self.unknowns[:, : 2 * ARCS], share]))
+        ends = ArcChains(link, ARCS).ends(np.column_stack([self.unknowns[:, CURVATURES], share]))
         motion = np.concatenate([link.min_bend_radius * ends.d_position, ends.rotation], axis=1)
         motion[:, :, -1] *= root / link.length.middle
         if robot.rigid_link.is_fixed:
@@ -117,7 +121,7 @@ class Population:
         by_d35 = np.stack([d35 / robot.d34, d35 * (1.0 - along) / radius], axis=-1)
         by_d45 = np.stack([-d45 / robot.d34, d45 * along / radius], axis=-1)
         whole = np.zeros((len(motion), 8, motion.shape[2] + 2))
-        whole[:, :6, :-2], whole[:, 6:, -2], whole[:, 6:, -1] = motion, by_d35, by_d45
+        whole[:, :6, : LENGTH + 1], whole[:, 6:, _D35], whole[:, 6:, _D45] = motion, by_d35, by_d45
         return whole
 
     @cached_property
@@ -138,6 +142,24 @@ class Population:
     def take(self, chosen: NDArray[np.intp] | NDArray[np.bool_] | slice) -> Population:
         """Return some of the shapes."""
         return Population(self.robot, self.unknowns[chosen])
+
+    @classmethod
+    def joined(cls, parts: Sequence[Population]) -> Population:
+        """Return the shapes of all parts, of one robot at least, in order."""
+        return cls(parts[0].robot, np.concatenate([part.unknowns for part in parts]))
+
+    def varied(self, sizes: Sequence[float], lengths: float, rng: np.random.Generator) -> Population:
+        """Return the shapes bent at random by a little or more, within the limits.
+
+        Args:
+            sizes: Of the bends, in units of the largest curvature; each shape gets one of them.
+            lengths: By how much lengths change beside that, m.
+            rng: Source of randomness.
+        """
+        size = rng.choice(sizes, (len(self.unknowns), 1)) * np.ones(self.unknowns.shape)
+        size[:, LENGTH:] *= lengths
+        moved = self.unknowns + size * rng.normal(size=self.unknowns.shape)
+        return Population(self.robot, into_limits(self.robot, moved))
 
     def where(self, mine: NDArray[np.bool_], other: Population) -> Population:
         """Return these shapes where a mask, shape (N,), says so, and others elsewhere."""
@@ -168,19 +190,19 @@ def into_limits(robot: Robot, unknowns: FloatArray) -> FloatArray:
     """
     unknowns = np.array(unknowns)
     link, rigid = robot.link, robot.rigid_link
-    unknowns[..., 2 * ARCS] = np.clip(unknowns[..., 2 * ARCS], link.length.lower, link.length.upper)
-    curvatures = unknowns[..., : 2 * ARCS].reshape(*unknowns.shape[:-1], ARCS, 2)
+    unknowns[..., LENGTH] = np.clip(unknowns[..., LENGTH], link.length.lower, link.length.upper)
+    curvatures = unknowns[..., CURVATURES].reshape(*unknowns.shape[:-1], ARCS, 2)
     bends = np.linalg.norm(curvatures, axis=-1)
     shrink = 1.0 / np.maximum(bends, 1.0)
-    total = np.sum(bends * shrink, axis=-1) * unknowns[..., 2 * ARCS] * link.max_curvature / ARCS
+    total = np.sum(bends * shrink, axis=-1) * unknowns[..., LENGTH] * link.max_curvature / ARCS
     shrink = shrink / np.maximum(total / max(link.max_total_bend, 1e-12), 1.0)[..., None]
-    unknowns[..., : 2 * ARCS] = (curvatures * shrink[..., None]).reshape(*unknowns.shape[:-1], 2 * ARCS)
+    unknowns[..., CURVATURES] = (curvatures * shrink[..., None]).reshape(*unknowns.shape[:-1], 2 * ARCS)
     if not rigid.is_fixed:
         # P3, P4, P5 must make a triangle: |d35 - d34| <= d45 <= d35 + d34.
-        d35 = np.clip(unknowns[..., -2], rigid.d35.lower, rigid.d35.upper)
+        d35 = np.clip(unknowns[..., _D35], rigid.d35.lower, rigid.d35.upper)
         d35 = np.clip(d35, rigid.d45.lower - robot.d34, rigid.d45.upper + robot.d34)
-        d45 = np.clip(unknowns[..., -1], np.abs(d35 - robot.d34), d35 + robot.d34)
-        unknowns[..., -2], unknowns[..., -1] = d35, np.clip(d45, rigid.d45.lower, rigid.d45.upper)
+        d45 = np.clip(unknowns[..., _D45], np.abs(d35 - robot.d34), d35 + robot.d34)
+        unknowns[..., _D35], unknowns[..., _D45] = d35, np.clip(d45, rigid.d45.lower, rigid.d45.upper)
     return unknowns
 
 
@@ -195,24 +217,24 @@ def free_directions(population: Population, slope: FloatArray) -> FloatArray:
     """
     robot, x, count = population.robot, population.unknowns, len(slope)
     free = np.tile(np.eye(x.shape[1]), (count, 1, 1))
-    curvatures = x[:, : 2 * ARCS].reshape(count, ARCS, 2)
+    curvatures = x[:, CURVATURES].reshape(count, ARCS, 2)
     bends = np.linalg.norm(curvatures, axis=-1)
     bent = curvatures / np.maximum(bends, _TINY)[..., None]
-    tighter = np.einsum("nai,nai->na", slope[:, : 2 * ARCS].reshape(count, ARCS, 2), bent) < 0.0
+    tighter = np.einsum("nai,nai->na", slope[:, CURVATURES].reshape(count, ARCS, 2), bent) < 0.0
     tightest = tighter & (bends >= 1.0 - _AT_LIMIT)
     for arc in range(ARCS):
         mine = slice(2 * arc, 2 * arc + 2)
         normal = bent[:, arc] * tightest[:, arc, None]
         free[:, mine, mine] -= normal[:, :, None] * normal[:, None, :]
-    for unknown, interval in enumerate(_lengths(robot), start=2 * ARCS):
+    for unknown, interval in enumerate(_lengths(robot), start=LENGTH):
         shorter, longer = slope[:, unknown] > 0.0, slope[:, unknown] < 0.0
         shortest = x[:, unknown] <= interval.lower + _AT_LIMIT
         longest = x[:, unknown] >= interval.upper - _AT_LIMIT
         free[:, unknown, unknown] -= (shorter & shortest) | (longer & longest)
     total = bends.sum(axis=1)
     normal = np.zeros(x.shape)
-    normal[:, : 2 * ARCS] = (bent * population.length[:, None, None]).reshape(count, -1)
-    normal[:, 2 * ARCS] = total
+    normal[:, CURVATURES] = (bent * population.length[:, None, None]).reshape(count, -1)
+    normal[:, LENGTH] = total
     normal = (free @ normal[..., None])[..., 0]
     squared = np.einsum("ni,ni->n", normal, normal)
     most = robot.link.max_total_bend * ARCS / robot.link.max_curvature

@@ -22,7 +22,6 @@ import numpy as np
 from synth.synthesis.starts.overlaps import overlaps
 from synth.synthesis.starts.refined import Refined
 from synth.synthesis.starts.refinement import cleared, level, refine
-from synth.synthesis.starts.shapes import ARCS, Population, into_limits
 from synth.task import Objective
 from synth.watch import Watch
 
@@ -32,6 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
+    from synth.synthesis.starts.shapes import Population
     from synth.task import Task
 
 # Rounds of the three steps; shapes kept; of these the parents, which miss differently; those of half of the
@@ -165,11 +165,7 @@ class Valleys:
 
 def _bent(task: Task, parents: Refined, rng: np.random.Generator, watch: Watch) -> Refined:
     """Return shapes after bending them at random by a little or more."""
-    unknowns = parents.population.unknowns
-    size = rng.choice(_SIZES, (len(unknowns), 1)) * np.ones(unknowns.shape)
-    size[:, 2 * ARCS :] *= _LENGTHS
-    changed = into_limits(task.robot, unknowns + size * rng.normal(size=unknowns.shape))
-    bent = Population(task.robot, changed)
+    bent = parents.population.varied(_SIZES, _LENGTHS, rng)
     return _weighed(task, refine(task, bent, iterations=_BENT, near=True, is_up=watch.is_up), watch)
 
 

@@ -93,9 +93,8 @@ class Pool:
 
     def joined(self, other: Pool) -> Pool:
         """Return the shapes of both."""
-        unknowns = np.concatenate([self.population.unknowns, other.population.unknowns])
         return Pool(
-            Population(self.population.robot, unknowns), np.concatenate([self.table, other.table])
+            Population.joined([self.population, other.population]), np.concatenate([self.table, other.table])
         ).sorted()
 
     def distinct(self) -> NDArray[np.intp]:

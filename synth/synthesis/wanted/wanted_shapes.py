@@ -16,13 +16,11 @@ import numpy as np
 
 from synth.robot import Interval
 from synth.synthesis.starts import (
-    ARCS,
     Aims,
     Population,
     Postures,
     estimated_misses,
     exact_designs,
-    into_limits,
     nearest_to_designs,
     refine,
     relative_weights,
@@ -115,7 +113,7 @@ def _searched(
 def _calmer(task: Task) -> Iterator[Task]:
     """Yield the same with joint 2 kept in one part of its range after another, and twice as it is.
 
-    None where the nearest to the present shape is wanted, nor for many targets: points of a scan have no order.
+    None where the nearest to the present shape is wanted, nor for many targets: a scan has no order.
     """
     if task.current is not None or len(task.targets) > _FEW_TARGETS:
         return
@@ -137,12 +135,12 @@ def _bred(
     stop: Callable[[], bool],
 ) -> Pool:
     """Return the shapes that are wanted most of some random ones and of what bending makes of them."""
-    beginnings = _promising(narrow, led, rng).unknowns
+    beginnings = _promising(narrow, led, rng)
     if known:
-        varied = _varied(narrow.robot, [Population.of(arm) for arm in known], _FROM_KNOWN, rng)
-        beginnings = np.concatenate([beginnings, varied])
+        shapes = Population(narrow.robot, Population.joined([Population.of(arm) for arm in known]).unknowns)
+        beginnings = Population.joined([beginnings, _varied(shapes, _FROM_KNOWN, rng)])
     iterations = _ITERATIONS if known else _ITERATIONS_CALMER
-    refined = refine(narrow, Population(narrow.robot, beginnings), iterations=iterations, is_up=stop)
+    refined = refine(narrow, beginnings, iterations=iterations, is_up=stop)
     pool = Pool.of(task, narrow, refined.population, stop)
     # Where targets are met exactly and fix finitely many surfaces, bending changes nothing that counts more
     # than the bend itself.
@@ -154,8 +152,7 @@ def _bred(
         gained.append(pool.table[0, :_COUNTS])
         if len(gained) > _PATIENCE and (gained[-1] > gained[-1 - _PATIENCE] - 0.2 * STEPS[:_COUNTS]).all():
             break
-        unknowns = _varied(narrow.robot, [pool.population.take(pool.distinct()[:_BENT])], _VARIED, rng)
-        bent = Population(narrow.robot, unknowns)
+        bent = _varied(pool.population.take(pool.distinct()[:_BENT]), _VARIED, rng)
         refined = refine(_beside(narrow, rng), bent, iterations=_ITERATIONS_AGAIN, is_up=stop)
         pool = pool.joined(Pool.of(task, narrow, refined.population, stop))
     return pool
@@ -181,13 +178,9 @@ def _random_shapes(robot: Robot) -> Population:
     return Population.sample(robot, _SHAPES, np.random.default_rng(0))
 
 
-def _varied(robot: Robot, parents: Sequence[Population], count: int, rng: np.random.Generator) -> FloatArray:
-    """Return unknowns of so many shapes bent at random by a little or more, some from each of the parents."""
-    unknowns = np.concatenate([each.unknowns for each in parents])
-    unknowns = np.resize(unknowns, (count, unknowns.shape[1]))
-    size = rng.choice(_SIZES, (count, 1)) * np.ones(unknowns.shape)
-    size[:, 2 * ARCS :] *= _LENGTHS
-    return into_limits(robot, unknowns + size * rng.normal(size=unknowns.shape))
+def _varied(parents: Population, count: int, rng: np.random.Generator) -> Population:
+    """Return so many shapes bent at random by a little or more, some from each of the parents."""
+    return parents.take(np.resize(np.arange(len(parents.length)), count)).varied(_SIZES, _LENGTHS, rng)
 
 
 def _beside(task: Task, rng: np.random.Generator) -> Task:
