@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from synth.geometry import designs_through_five, designs_through_four
+from synth.geometry import arms_through_five, arms_through_four
 
 RADIUS = 0.4545  # m, of the prototype
 
@@ -45,4 +45,4 @@ def errors(designs, planted):
 
 def through(targets, radius):
     """Ask for the designs of either kind."""
-    return designs_through_five(targets) if radius is None else designs_through_four(targets, radius)
+    return arms_through_five(targets) if radius is None else arms_through_four(targets, radius)

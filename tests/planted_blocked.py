@@ -96,7 +96,7 @@ def floor_too_high(rng: np.random.Generator) -> Task:
     """The lowest target is 5 mm below the floor, or the link would be."""
     arm = planted_arm(rng)
     task = _task(arm, _joints(rng, arm, 8))
-    return replace(task, floor=min(float(task.positions[:, 2].min()) + 5e-3, ROBOT.d12 - 1e-3))
+    return replace(task, floor=min(float(task.positions_in_base[:, 2].min()) + 5e-3, ROBOT.d12 - 1e-3))
 
 
 def obstacle_in_the_way(rng: np.random.Generator) -> Task:

@@ -9,7 +9,7 @@ from planted import planted_task
 
 from synth.synthesis.bound.boxes import _CHARTS, Boxes
 from synth.synthesis.bound.misses import MissBounds
-from synth.synthesis.starts.shapes import Population, into_limits
+from synth.synthesis.starts.shapes import Shapes, into_limits
 from synth.task import PointTarget, Task
 
 
@@ -30,17 +30,17 @@ def noisy_task(seed, count=None, least=0.01, most=0.03):
 
 def shapes_about(robot, count, rng):
     """Shapes in the limits of the link that differ from one of them by little or much."""
-    drawn = Population.sample(robot, count, rng).unknowns
+    drawn = Shapes.sample(robot, count, rng).unknowns
     share = 10.0 ** rng.uniform(-3.0, 0.0, (count, 1))
-    return Population(robot, into_limits(robot, drawn[0] + share * (drawn - drawn[0])))
+    return Shapes(robot, into_limits(robot, drawn[0] + share * (drawn - drawn[0])))
 
 
-def task_about(population, count, rng, noise=0.02):
+def task_about(shapes, count, rng, noise=0.02):
     """A task of points near the workspace of the first shape, at random angles within the joint limits."""
-    robot, limits = population.robot, population.robot.joint_limits
+    robot, limits = shapes.robot, shapes.robot.joint_limits
     theta1 = rng.uniform(limits.base.lower, limits.base.upper, count)
     theta2 = rng.uniform(limits.second.lower, limits.second.upper, count)
-    points = population.take(np.array([0])).kinematics.each_target().forward(theta1, theta2)[0]
+    points = shapes.take(np.array([0])).kinematics.each_target().forward(theta1, theta2)[0]
     points = points + noise * rng.uniform() * rng.normal(size=points.shape)
     tolerances = 1e-3 * rng.uniform(1.0, 2.0, count)
     targets = [
@@ -49,9 +49,9 @@ def task_about(population, count, rng, noise=0.02):
     return Task("about a shape", robot, tuple(targets), floor=None)
 
 
-def parameters(population):
+def parameters(shapes):
     """Chart and (rho, h, alpha, beta, psi) of shapes, after a turn about axis 1 and a reflection."""
-    frame, p = population.end
+    frame, p = shapes.end
     azimuth = np.arctan2(p[:, 1], p[:, 0])
     cos, sin, zero, one = np.cos(azimuth), np.sin(azimuth), np.zeros(len(p)), np.ones(len(p))
     back = np.array([[cos, sin, zero], [-sin, cos, zero], [zero, zero, one]]).transpose(2, 0, 1)
@@ -78,21 +78,21 @@ def boxes_at(chart, middle, half):
     return Boxes(chart, middle, half, np.zeros(len(chart)), np.zeros(len(chart), dtype=bool), numbers)
 
 
-def worst_misses(task, population):
+def worst_misses(task, shapes):
     """The worst weighted miss of each shape, by forward kinematics at many angles of joint 2."""
     factors = task.tolerances.min() / task.tolerances
     second = task.robot.joint_limits.second
-    points = population.kinematics.each_target().forward(0.0, np.linspace(second.lower, second.upper, 3001))
+    points = shapes.kinematics.each_target().forward(0.0, np.linspace(second.lower, second.upper, 3001))
     rho, z = np.hypot(points[..., 0], points[..., 1]), points[..., 2]
     worst = np.zeros(len(rho))
-    for (x, y, height), factor in zip(task.positions, factors, strict=True):
+    for (x, y, height), factor in zip(task.positions_in_base, factors, strict=True):
         worst = np.maximum(worst, factor * np.hypot(rho - np.hypot(x, y), z - height).min(axis=1))
     return worst
 
 
-def contradictions(task, population, rng):
+def contradictions(task, shapes, rng):
     """How many shapes contradict the bounds of boxes around them, of how many, and bounds over misses."""
-    chart, where = parameters(population)
+    chart, where = parameters(shapes)
     count = len(chart)
     size = 10.0 ** rng.uniform(-4.5, -0.5, (count, 1)) * rng.uniform(0.2, 1.0, (count, 5))
     psi_half = np.where(rng.uniform(size=count) < 0.5, np.pi, size[:, 4])
@@ -105,7 +105,7 @@ def contradictions(task, population, rng):
     lower = np.maximum(middle - size, [0.0, -np.inf, -np.inf, -np.inf, -np.pi])
     upper = np.minimum(middle + size, [np.inf, np.inf, np.inf, np.inf, np.pi])
     boxes = boxes_at(chart, 0.5 * (lower + upper), 0.5 * (upper - lower))
-    worst = worst_misses(task, population)
+    worst = worst_misses(task, shapes)
     bounds = MissBounds(task, np.arange(len(task.targets)), task.tolerances.min() / task.tolerances)
     wrong, asked, ratios = 0, 0, []
     for enough in np.quantile(worst, [0.1, 0.5, 0.9]):

@@ -19,7 +19,7 @@ from synth.synthesis.bound.contraction import contracted, hull_of_cells
 from synth.synthesis.bound.forms import Circle
 from synth.synthesis.bound.limits import Limits, ReachTable
 from synth.synthesis.bound.linear import combined, multipliers
-from synth.synthesis.starts.shapes import Population
+from synth.synthesis.starts.shapes import Shapes
 from synth.watch import Watch
 
 
@@ -32,8 +32,8 @@ def ended_after(looks):
 @pytest.mark.parametrize("seed", range(6))
 def test_no_shape_contradicts_the_bound_of_a_box_around_it(seed):
     rng = np.random.default_rng(seed)
-    population = shapes_about(ROBOT, 250, rng)
-    wrong, asked, ratios = contradictions(task_about(population, 1 + seed, rng), population, rng)
+    shapes = shapes_about(ROBOT, 250, rng)
+    wrong, asked, ratios = contradictions(task_about(shapes, 1 + seed, rng), shapes, rng)
     assert wrong == 0
     assert asked > 350
     # A bound that is nothing, or far below the misses, would not be contradicted either.
@@ -43,8 +43,8 @@ def test_no_shape_contradicts_the_bound_of_a_box_around_it(seed):
 
 def test_every_direction_and_its_mirror_image_is_in_a_chart():
     rng = np.random.default_rng(0)
-    population = Population.sample(ROBOT, 2000, rng)
-    chart, where = parameters(population)
+    shapes = Shapes.sample(ROBOT, 2000, rng)
+    chart, where = parameters(shapes)
     cover = Boxes.cover(1.0, (-1.0, 1.0))
     off = np.abs(where - cover.middle[chart]) - cover.half[chart]
     assert off.max() < 1e-12
@@ -171,7 +171,7 @@ def test_halves_make_up_their_box():
 def test_no_limit_forbids_a_shape_that_the_link_can_take():
     task, _ = planted_task(0, 4)
     task, limits = replace(task, floor=None), Limits.of(replace(task, floor=None))
-    chart, where = parameters(Population.sample(ROBOT, 4000, np.random.default_rng(1)))
+    chart, where = parameters(Shapes.sample(ROBOT, 4000, np.random.default_rng(1)))
     boxes = boxes_at(chart, where, np.full(where.shape, 1e-9))
     assert limits.allow_end(boxes).all()
     value, _, known = limits.length_cut(boxes)
@@ -186,12 +186,12 @@ def test_no_limit_forbids_a_shape_whose_tube_is_above_the_floor():
     floor = ROBOT.d12 - 0.1
     task = replace(planted_task(0, 4)[0], floor=floor)
     limits = Limits.of(task)
-    population = Population.sample(ROBOT, 1500, np.random.default_rng(2))
-    arms = [population.arm(i, task.base) for i in range(1500)]
+    shapes = Shapes.sample(ROBOT, 1500, np.random.default_rng(2))
+    arms = [shapes.arm(i, task.base) for i in range(1500)]
     above = np.array(
         [ArmBody(arm).lowest() >= floor and arm.axis_points[2:, 2].min() >= floor for arm in arms]
     )
-    chart, where = parameters(population)
+    chart, where = parameters(shapes)
     boxes = boxes_at(chart, where, np.full(where.shape, 1e-9))
     allowed = limits.allow_end(boxes) & limits.allow_direction(boxes, where[:, 4:], 1e-9)[:, 0]
     assert np.count_nonzero(above) > 200
@@ -204,9 +204,9 @@ def test_no_limit_forbids_a_shape_whose_tube_is_above_the_floor():
 
 def test_links_end_as_they_are_asked_to():
     rng = np.random.default_rng(0)
-    population = Population.sample(ROBOT, 5, rng)
+    shapes = Shapes.sample(ROBOT, 5, rng)
     for i in range(5):
-        frame, position = population.arm(i, planted_task(0, 4)[0].base).shape.end_frame()
+        frame, position = shapes.arm(i, planted_task(0, 4)[0].base).shape.end_frame()
         shape = LinkEnd(position, frame).links(ROBOT.link, 4, 64, rng)[0]
         reached, there = shape.end_frame()
         # A turn about axis 1 is left open.

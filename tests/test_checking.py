@@ -36,7 +36,7 @@ def fit(scene, true, names=BARS, rng=None, *, base_calibrated=True):
 
 
 def misses(arm, joints, task):
-    return np.linalg.norm(arm.forward(joints) - task.positions, axis=-1)
+    return np.linalg.norm(arm.forward(joints) - task.positions_in_base, axis=-1)
 
 
 def test_a_link_in_its_place_is_locked(scene):
@@ -55,8 +55,8 @@ def test_a_link_off_its_place_is_corrected(scene):
     check = check_arm(task, designs, fit(scene, true, rng=np.random.default_rng(0)))
     assert check.verdict is Verdict.CORRECT
     after = true.moved(np.concatenate([check.correction.move, check.correction.rotate]))
-    before = misses(true, true.closest(task.positions), task).max()
-    assert misses(after, after.closest(task.positions), task).max() < 0.35 * before
+    before = misses(true, true.closest(task.positions_in_base), task).max()
+    assert misses(after, after.closest(task.positions_in_base), task).max() < 0.35 * before
     assert check.correction.shape is not None
     assert "move the link's end" in check_text(check)
 
@@ -94,7 +94,7 @@ def test_the_chances_told_are_what_happens(scene):
         true = wanted.moved(rng.uniform(0.0, 0.6) * errors(HAND.placement, 1, rng)[0])
         measured = fit(scene, true, BARS, rng)
         joints = best_joints(measured.arm, task, designs[0].verification.joints)
-        view = outlook(measured, joints, task.positions, task.tolerances)
+        view = outlook(measured, joints, task.positions_in_base, task.tolerances)
         told.append(view.probability_all_within)
         within.append((misses(true, joints, task) <= task.tolerances).all())
     chance, share = 1.0 - np.mean(told), 1.0 - np.mean(within)
@@ -106,10 +106,12 @@ def test_an_aim_meets_the_task_and_is_nearer_than_the_design(scene):
     task, designs, wanted = scene
     arm = wanted.moved(OFF)
     weights = np.ones(len(task.targets))
-    joints = arm.closest(task.positions)
-    _, move, there = best_aims(arm, [d.arm for d in designs], joints, task.positions, weights, HAND, 0.05)[0]
+    joints = arm.closest(task.positions_in_base)
+    _, move, there = best_aims(
+        arm, [d.arm for d in designs], joints, task.positions_in_base, weights, HAND, 0.05
+    )[0]
     assert misses(arm.moved(move), there, task).max() < 1.5e-3
-    _, near, _ = best_aims(arm, [designs[0].arm], joints, task.positions, weights, HAND, 0.4)[0]
+    _, near, _ = best_aims(arm, [designs[0].arm], joints, task.positions_in_base, weights, HAND, 0.4)[0]
     direct = towards(arm, designs[0].arm)
 
     def size(by):
@@ -122,11 +124,11 @@ def test_the_cost_of_an_aim_is_the_mean_square_over_errors_of_the_hand(scene):
     task, _, wanted = scene
     # Of a hand so fine that the surface is flat over its errors.
     hand = replace(HAND, floor=(0.25e-3, np.radians(0.085)))
-    joints, limits = wanted.closest(task.positions), ROBOT.joint_limits
+    joints, limits = wanted.closest(task.positions_in_base), ROBOT.joint_limits
     # A joint at its limit is held for half of the errors only.
     inner = (joints[:, 1] > limits.second.lower + 0.05) & (joints[:, 1] < limits.second.upper - 0.05)
     assert inner.sum() >= 2
-    joints, targets = joints[inner], task.positions[inner]
+    joints, targets = joints[inner], task.positions_in_base[inner]
     move, there, cost = aimed(wanted, np.zeros(6), joints, targets, np.ones(len(targets)), hand, 0.0)
     arms = wanted.moved(move)
     arms = arms.displaced(
@@ -149,9 +151,9 @@ def test_towards_a_design_is_a_turn_about_axis_1_and_a_roll_away_from_it(scene):
 def test_more_tries_are_worth_more(scene):
     task, _, wanted = scene
     measured = fit(scene, wanted.moved(OFF))
-    joints = wanted.closest(task.positions)
+    joints = wanted.closest(task.positions_in_base)
     values = [
-        value_of_trying(measured, -OFF, joints, task.positions, task.tolerances, HAND, k)[0]
+        value_of_trying(measured, -OFF, joints, task.positions_in_base, task.tolerances, HAND, k)[0]
         for k in (1, 2, 3)
     ]
     assert values[0] > values[1] > values[2] > 0.0

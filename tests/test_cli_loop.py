@@ -43,7 +43,7 @@ def test_a_solution_is_read_as_it_was(scene):
     read, arms = load_shapes(file)
     assert read.name == task.name
     assert read.robot == task.robot
-    assert np.allclose(read.positions, task.positions)
+    assert np.allclose(read.positions, task.positions_in_base)
     assert len(arms) == len(solution.designs)
     assert verify(read, arms[0]).found
 

@@ -8,8 +8,8 @@ from planted import ROBOT, planted_task
 
 from synth.robot import Interval, RigidLink
 from synth.synthesis import Status, solve
-from synth.synthesis.starts.exact_arms import exact_designs, nearest_to_designs
-from synth.synthesis.starts.shapes import Population
+from synth.synthesis.starts.exact_arms import exact_arms, nearest_to_exact_arms
+from synth.synthesis.starts.shapes import Shapes
 from synth.task import PointTarget, Task, Topology
 
 
@@ -23,7 +23,7 @@ def is_design(invariants, designs, tolerance=1e-6):
 @pytest.mark.parametrize("seed", range(8))
 def test_four_planted_targets_have_the_planted_design_and_the_answer_is_one_of_them(seed):
     task, arm = planted_task(seed, 4)
-    designs = exact_designs(task)
+    designs = exact_arms(task)
     assert is_design(arm.invariants, designs)
     # To a tolerance that leaves nothing to choose: else a shape with margins is worth a miss within it.
     exactly = replace(task, targets=replace(task.table, tolerances=np.full(4, 1e-6)))
@@ -37,35 +37,35 @@ def test_four_planted_targets_have_the_planted_design_and_the_answer_is_one_of_t
 
 def test_five_targets_of_a_free_rigid_link_have_the_planted_design():
     task, arm = planted_task(3, 5)
-    assert exact_designs(task) is None
+    assert exact_arms(task) is None
     free = replace(ROBOT, rigid_link=RigidLink(Interval(0.3, 0.6), Interval(0.3, 0.6)))
-    assert is_design(arm.invariants, exact_designs(replace(task, robot=free)))
+    assert is_design(arm.invariants, exact_arms(replace(task, robot=free)))
 
 
 @pytest.mark.parametrize("count", [1, 3, 5, 6])
 def test_other_counts_of_targets_have_no_finite_answer(count):
-    assert exact_designs(planted_task(1, count)[0]) is None
+    assert exact_arms(planted_task(1, count)[0]) is None
 
 
 def test_targets_in_a_plane_or_on_a_sphere_have_no_finite_answer():
     for topology in (Topology.SCARA, Topology.SPHERICAL):
-        assert exact_designs(planted_task(2, 4, topology)[0]) is None
+        assert exact_arms(planted_task(2, 4, topology)[0]) is None
 
 
 def test_the_nearest_shapes_are_near_whichever_way_the_design_lies():
     task, arm = planted_task(5, 4)
-    population = Population.sample(ROBOT, 20_000, np.random.default_rng(0))
-    chosen = nearest_to_designs(population, [arm.invariants], 5)
+    shapes = Shapes.sample(ROBOT, 20_000, np.random.default_rng(0))
+    chosen = nearest_to_exact_arms(shapes, [arm.invariants], 5)
     assert 5 <= len(chosen) <= 20
-    misses = [population.arm(int(i), task.base).closest_joints(task.positions)[1].max() for i in chosen]
-    everyone = [population.arm(i, task.base).closest_joints(task.positions)[1].max() for i in range(100)]
+    misses = [shapes.arm(int(i), task.base).closest_joints(task.positions_in_base)[1].max() for i in chosen]
+    everyone = [shapes.arm(i, task.base).closest_joints(task.positions_in_base)[1].max() for i in range(100)]
     assert np.median(misses) < 0.5 * np.median(everyone)
 
 
 def test_targets_without_a_real_design_are_reported_with_that_reason():
     positions = [[0.45, 0.1, 0.2], [0.1, 0.5, 0.45], [-0.3, 0.2, 0.6], [0.2, -0.6, 0.75]]
     task = Task("none", ROBOT, tuple(PointTarget(f"p{i}", p, 1e-4) for i, p in enumerate(positions)))
-    assert exact_designs(task) == ()
+    assert exact_arms(task) == ()
     solution = solve(task)
     assert solution.status is Status.BEST_EFFORT
     assert any("by algebra" in reason for reason in solution.reasons)

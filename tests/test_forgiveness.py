@@ -8,8 +8,8 @@ from planted import planted_task
 from scipy.spatial.transform import Rotation
 
 from synth.robot import BasePose
-from synth.synthesis.starts.postures import Aims, Postures
-from synth.synthesis.starts.shapes import Population
+from synth.synthesis.starts.postures import Postures, TargetsSeen
+from synth.synthesis.starts.shapes import Shapes
 from synth.synthesis.wanted.forgiveness import hand_forgiveness, misses_after_a_hand
 
 
@@ -88,11 +88,11 @@ def test_a_target_that_is_missed_already_counts_with_its_miss():
 
 def test_many_shapes_at_once_are_judged_as_one_by_one():
     task, arm = planted_task(3, 4)
-    population = Population.sample(arm.robot, 15, np.random.default_rng(0))
-    aims = Aims(task.positions, arm.robot.joint_limits)
-    postures = Postures.nearest(aims, population.kinematics)
+    shapes = Shapes.sample(arm.robot, 15, np.random.default_rng(0))
+    aims = TargetsSeen(task.positions_in_base, arm.robot.joint_limits)
+    postures = Postures.nearest(aims, shapes.kinematics)
     together, _ = misses_after_a_hand(
-        aims, task.tolerances, population.kinematics, population.end[1], postures.theta2
+        aims, task.tolerances, shapes.kinematics, shapes.end[1], postures.theta2
     )
-    alone = [hand_forgiveness(task, population.arm(i, task.base)).expected_worst_miss for i in range(15)]
+    alone = [hand_forgiveness(task, shapes.arm(i, task.base)).expected_worst_miss for i in range(15)]
     assert np.allclose(together, alone, rtol=0.01)

@@ -17,12 +17,12 @@ from synth.errors import GeometryError
 from synth.geometry import (
     Invariants,
     SweptCircle,
+    arms_through_five,
+    arms_through_four,
     circle_through,
     cognate,
-    designs_through_five,
-    designs_through_four,
     planes_through,
-    sample_designs,
+    sample_exact_arms,
     spheres_through,
 )
 
@@ -80,7 +80,7 @@ class TestPlantedDesigns:
         planted = Invariants.from_circle(arm.circle)
         # The circle meets axis 1 where the cognates do: see the docstring of `cognate`.
         assume(abs(cognate(planted).R - planted.R) > 0.02)
-        answers = designs_through_five(end_effector(arm.circle, *theta)).of()
+        answers = arms_through_five(end_effector(arm.circle, *theta)).of()
         apart = [abs(surface(answer) - surface(planted)).max() for answer in answers]
         assert len(answers) == 2
         assert max(apart) < 1e-7
@@ -90,7 +90,7 @@ class TestPlantedDesigns:
         rng = np.random.default_rng(4)
         planted = random_values(rng, 20)
         targets = targets_of(planted, 5, rng)
-        designs = designs_through_five(targets)
+        designs = arms_through_five(targets)
         for index in range(20):
             for design in designs.of(index):
                 for chirality in (1, -1):
@@ -133,7 +133,7 @@ class TestAnswers:
         # Newton's method from all over the place, with a Jacobian by differences: it shares no formula.
         rng = np.random.default_rng(8)
         targets = half_ball(rng, 12, 4, reach=0.8)
-        for index, designs in enumerate(designs_through_four(targets, RADIUS).values):
+        for index, designs in enumerate(arms_through_four(targets, RADIUS).values):
             known = designs[~np.isnan(designs[:, 0])]
             for values in searched(targets[index], rng):
                 assert np.min(np.max(np.abs(known - values), axis=-1)) < 1e-5
@@ -228,8 +228,7 @@ class TestLaws:
         rng = np.random.default_rng(10)
         planted = random_values(rng, 50)
         assert (
-            np.median(errors(designs_through_four(targets_of(planted, 4, rng), planted[:, 4]), planted))
-            < 1e-12
+            np.median(errors(arms_through_four(targets_of(planted, 4, rng), planted[:, 4]), planted)) < 1e-12
         )
 
 
@@ -266,7 +265,7 @@ class TestCognates:
     def test_are_the_two_answers_of_five_targets(self, seed):
         rng = np.random.default_rng(seed)
         targets = targets_of(random_values(rng, 1), 5, rng)[0]
-        designs = designs_through_five(targets)
+        designs = arms_through_five(targets)
         assume(well_conditioned(targets, None, designs))
         one, other = designs.of()
         assert max(abs(np.subtract(astuple(one), astuple(other)))) > 1e-4
@@ -312,7 +311,7 @@ class TestFamilies:
             family.design(0.2 + family.smallest_radius, 0.21 + family.smallest_radius + family.inner)
         with pytest.raises(GeometryError):
             family.a_range(family.smallest_radius - 1e-6)
-        assert not designs_through_five(targets).found.any()
+        assert not arms_through_five(targets).found.any()
 
     @settings(max_examples=40)
     @given(arms(families=["meeting", "at P1", "at P2"]), FEW, st.booleans())
@@ -336,7 +335,7 @@ class TestFamilies:
                 assert np.max(design.circle().distance(targets)) < 1e-7
         with pytest.raises(GeometryError):
             family.design(family.opening_range[1] + 0.1, 0.5)
-        assert not designs_through_four(targets[:4], arm.circle.radius).found.any()
+        assert not arms_through_four(targets[:4], arm.circle.radius).found.any()
 
     def test_targets_on_a_circle_have_coincident_axes(self):
         targets = [[0.3, 0.0, 0.2], [0.0, 0.3, 0.2], [0.0, -0.3, 0.2]]
@@ -362,24 +361,24 @@ class TestSamples:
         planted = random_values(rng, 1)
         planted[:, 4] = RADIUS
         targets = targets_of(planted, given_count, rng)[0]
-        sample = sample_designs(targets, 40, reach=1.0, radius=radius, seed=1)
+        sample = sample_exact_arms(targets, 40, reach=1.0, radius=radius, seed=1)
         assert sample.values.shape == (40, 5)
         for design in sample.of():
             assert np.max(design.circle().distance(targets)) < 1e-9
             assert radius in {None, design.R}
         assert np.ptp(sample.values[:, 0]) > 1e-2
-        again = sample_designs(targets, 40, reach=1.0, radius=radius, seed=1)
+        again = sample_exact_arms(targets, 40, reach=1.0, radius=radius, seed=1)
         assert np.array_equal(again.values, sample.values)
 
     def test_count_targets_on_one_circle_once(self):
         targets = [[0.4, 0.0, 0.3], [0.0, 0.4, 0.3], [0.5, 0.0, 0.1], [0.0, -0.5, 0.1], [0.2, 0.2, 0.5]]
-        assert not designs_through_five(targets).found.any()
-        sample = sample_designs(targets, 5, reach=1.0)
+        assert not arms_through_five(targets).found.any()
+        sample = sample_exact_arms(targets, 5, reach=1.0)
         assert np.max([design.circle().distance(targets) for design in sample.of()]) < 1e-9
 
     def test_are_empty_where_there_is_no_design(self):
         # Two points at one height as far apart as no circle of this radius reaches.
-        sample = sample_designs([[2.0, 0.0, 0.1], [0.0, 0.0, 0.1]], 3, reach=1.0, radius=0.1)
+        sample = sample_exact_arms([[2.0, 0.0, 0.1], [0.0, 0.0, 0.1]], 3, reach=1.0, radius=0.1)
         assert sample.of() == ()
 
 
@@ -387,12 +386,12 @@ class TestRefusals:
     @pytest.mark.parametrize("wrong", [np.zeros((4, 3)), np.zeros((5, 2)), np.full((5, 3), np.nan)])
     def test_wrong_targets(self, wrong):
         with pytest.raises(GeometryError):
-            designs_through_five(wrong)
+            arms_through_five(wrong)
 
     @pytest.mark.parametrize("radius", [0.0, -1.0, np.nan])
     def test_wrong_radii(self, radius):
         with pytest.raises(GeometryError):
-            designs_through_four(np.eye(4, 3), radius)
+            arms_through_four(np.eye(4, 3), radius)
 
     @pytest.mark.parametrize("function", [planes_through, spheres_through, circle_through])
     @pytest.mark.parametrize("wrong", [np.zeros((0, 3)), np.zeros(3), np.full((2, 3), np.inf)])
@@ -403,10 +402,10 @@ class TestRefusals:
     def test_samples_of_too_many_or_no_targets(self):
         for targets, radius in ((np.zeros((0, 3)), None), (np.eye(5, 3) + np.arange(5)[:, None], None)):
             with pytest.raises(GeometryError):
-                sample_designs(targets, 1, reach=1.0, radius=radius)
+                sample_exact_arms(targets, 1, reach=1.0, radius=radius)
 
     def test_many_sets_need_an_index(self):
-        designs = designs_through_five(half_ball(np.random.default_rng(13), 2, 5))
+        designs = arms_through_five(half_ball(np.random.default_rng(13), 2, 5))
         with pytest.raises(GeometryError):
             designs.of()
         with pytest.raises(ValueError, match="read-only"):
@@ -416,11 +415,11 @@ class TestRefusals:
         "targets", [np.zeros((5, 3)), np.ones((5, 3)), np.outer(np.arange(5), [0, 0, 1])]
     )
     def test_sets_without_extent_have_no_answer(self, targets):
-        assert designs_through_five(targets).of() == ()
-        assert designs_through_four(targets[:4], RADIUS).of() == ()
+        assert arms_through_five(targets).of() == ()
+        assert arms_through_four(targets[:4], RADIUS).of() == ()
 
     def test_a_target_out_of_reach_of_any_circle_has_no_answer(self):
         # The conic through these is a hyperbola: the middle one lies on the wrong side.
         rho = np.array([0.5, 0.5, 0.5, 0.5, 0.1])
         z = np.array([-0.3, -0.1, 0.1, 0.3, 0.0])
-        assert designs_through_five(np.stack([rho, 0 * rho, z], axis=-1)).of() == ()
+        assert arms_through_five(np.stack([rho, 0 * rho, z], axis=-1)).of() == ()

@@ -167,7 +167,7 @@ def worst_excess(task, arm, shifts, tilts):
     radius = np.asarray(arm.circle.radius)
     centres = end + shifts + turn @ (arm.circle.centre - end)
     misses = [
-        closest_joints(Kinematics(frame, centre, radius), task.positions, arm.robot.joint_limits)[1]
+        closest_joints(Kinematics(frame, centre, radius), task.positions_in_base, arm.robot.joint_limits)[1]
         for frame, centre in zip(turn @ rotation, centres, strict=True)
     ]
     return (np.array(misses) / task.tolerances).max()

@@ -75,4 +75,4 @@ def test_a_table_is_a_sequence_of_its_targets():
     assert len(table.followed_by(table)) == 8
     task = Task("table", planted_task(1, 1)[0].robot, targets)
     assert np.array_equal(task.tolerances, [target.tolerance for target in targets])
-    assert np.array_equal(task.positions, [target.position for target in targets])
+    assert np.array_equal(task.positions_in_base, [target.position for target in targets])

@@ -29,7 +29,7 @@ def test_planted_arms_are_found_and_keep_clear(scene, seed):
 
 def test_an_obstacle_on_the_planted_arm_is_seen_and_gone_around():
     task, arm = planted_task(7, 3)
-    joints, _ = arm.closest_joints(task.positions)
+    joints, _ = arm.closest_joints(task.positions_in_base)
     middle = arm.shape.point_at(0.6 * arm.shape.length) + [0, 0, ROBOT.d12]
     theta1 = joints[0, 0]
     c, s = np.cos(theta1), np.sin(theta1)
@@ -48,7 +48,7 @@ def test_an_obstacle_on_the_planted_arm_is_seen_and_gone_around():
 
 def test_a_target_in_an_obstacle_is_impossible():
     task, _ = planted_task(3, 4)
-    box = Box(task.positions[2], np.array([0.1, 0.2, 0.04]), 0.3)
+    box = Box(task.positions_in_base[2], np.array([0.1, 0.2, 0.04]), 0.3)
     solution = solve(replace(task, obstacles=(Obstacle("crate", box),)))
     assert solution.status is Status.PROVEN_IMPOSSIBLE
     assert solution.reasons == ("target 3 is in crate: the end effector would be at least 20.0 mm inside",)

@@ -12,11 +12,11 @@ from synth.robot import BasePose, Interval, JointLimits, RigidLink
 from synth.synthesis.starts.category_offsets import category_offsets, category_slopes
 from synth.synthesis.starts.descent import _curvature_of_norm
 from synth.synthesis.starts.overlaps import overlaps
-from synth.synthesis.starts.postures import Aims, Postures
+from synth.synthesis.starts.postures import Postures, TargetsSeen
 from synth.synthesis.starts.refined import relative_weights
 from synth.synthesis.starts.refinement import cleared, level, refine
 from synth.synthesis.starts.residuals import Residuals
-from synth.synthesis.starts.shapes import Population, free_directions, in_equal_arcs, into_limits
+from synth.synthesis.starts.shapes import Shapes, free_directions, in_equal_arcs, into_limits
 from synth.task import Objective, Obstacle, PointTarget, Topology
 
 FREE = replace(
@@ -25,10 +25,10 @@ FREE = replace(
 STEP = 1e-6
 
 
-def nudged(population, unknown):
+def nudged(shapes, unknown):
     """The shapes with one unknown more and less by STEP."""
-    step = STEP * np.eye(population.unknowns.shape[1])[unknown]
-    return tuple(Population(population.robot, population.unknowns + side * step) for side in (1.0, -1.0))
+    step = STEP * np.eye(shapes.unknowns.shape[1])[unknown]
+    return tuple(Shapes(shapes.robot, shapes.unknowns + side * step) for side in (1.0, -1.0))
 
 
 def change(more, less):
@@ -37,25 +37,25 @@ def change(more, less):
 
 def inside(robot, count, seed):
     """Shapes well within all limits, so that differences may go to either side."""
-    drawn = Population.sample(robot, 8 * count, np.random.default_rng(seed))
+    drawn = Shapes.sample(robot, 8 * count, np.random.default_rng(seed))
     unknowns = np.array(drawn.unknowns[drawn.kinematics.radius > 0.1][:count])
     unknowns[:, :8] *= 0.7
-    return Population(robot, unknowns)
+    return Shapes(robot, unknowns)
 
 
 @pytest.mark.parametrize("robot", [ROBOT, FREE])
 def test_the_motion_of_the_links_end_is_its_derivative(robot):
-    population = inside(robot, 20, 0)
-    frame, _ = population.end
-    for unknown in range(population.unknowns.shape[1]):
-        more, less = nudged(population, unknown)
+    shapes = inside(robot, 20, 0)
+    frame, _ = shapes.end
+    for unknown in range(shapes.unknowns.shape[1]):
+        more, less = nudged(shapes, unknown)
         turned = change(more.end[0], less.end[0]) @ frame.transpose(0, 2, 1)
         turn = np.stack([turned[:, 2, 1], turned[:, 0, 2], turned[:, 1, 0]], axis=-1)
-        assert np.allclose(population.motion[:, :3, unknown], change(more.end[1], less.end[1]), atol=1e-6)
-        assert np.allclose(population.motion[:, 3:6, unknown], turn, atol=1e-6)
-        if population.motion.shape[1] > 6:
+        assert np.allclose(shapes.motion[:, :3, unknown], change(more.end[1], less.end[1]), atol=1e-6)
+        assert np.allclose(shapes.motion[:, 3:6, unknown], turn, atol=1e-6)
+        if shapes.motion.shape[1] > 6:
             circles = [np.stack(robot.end_effector_circle(*p.rigid_links), axis=-1) for p in (more, less)]
-            assert np.allclose(population.motion[:, 6:, unknown], change(*circles), rtol=1e-6, atol=1e-5)
+            assert np.allclose(shapes.motion[:, 6:, unknown], change(*circles), rtol=1e-6, atol=1e-5)
 
 
 @pytest.mark.parametrize("robot", [ROBOT, FREE])
@@ -66,7 +66,7 @@ def test_the_motion_of_the_links_end_is_its_derivative(robot):
 )
 def test_the_slope_is_that_of_the_squared_misses_with_the_joints_at_their_best(robot, limits):
     robot = replace(robot, joint_limits=limits)
-    population, compared = inside(robot, 30, 1), 0
+    shapes, compared = inside(robot, 30, 1), 0
 
     def led(aims, shapes, theta2):
         """Postures whose joint 2 is led on to its best, and which of them are there."""
@@ -77,50 +77,50 @@ def test_the_slope_is_that_of_the_squared_misses_with_the_joints_at_their_best(r
         return Postures.at(aims, shapes.kinematics, theta2), np.abs(step[:, 0]) < 1e-10
 
     for target in noisy(1).positions:
-        aims = Aims(target[None], limits)
-        here, arrived = led(aims, population, Postures.nearest(aims, population.kinematics).theta2)
-        _, slope = Residuals(population, here, limits.second).normal_equations(np.ones((30, 1)))
-        by_unknowns = np.einsum("nk,nku->nu", slope, population.motion)
-        for unknown in range(population.unknowns.shape[1]):
-            (more, sure), (less, again) = (led(aims, p, here.theta2) for p in nudged(population, unknown))
+        aims = TargetsSeen(target[None], limits)
+        here, arrived = led(aims, shapes, Postures.nearest(aims, shapes.kinematics).theta2)
+        _, slope = Residuals(shapes, here, limits.second).normal_equations(np.ones((30, 1)))
+        by_unknowns = np.einsum("nk,nku->nu", slope, shapes.motion)
+        for unknown in range(shapes.unknowns.shape[1]):
+            (more, sure), (less, again) = (led(aims, p, here.theta2) for p in nudged(shapes, unknown))
             # Where joint 2 is between two valleys, or joint 1 comes to its limit, there is no derivative.
             sure &= arrived & again & (np.abs(more.theta2 - less.theta2)[:, 0] < 1e-3)
             sure &= ((more.beyond == 0.0) == (less.beyond == 0.0))[:, 0]
             slopes = change(more.squared, less.squared)[sure, 0]
             assert np.allclose(2.0 * by_unknowns[sure, unknown], slopes, rtol=1e-4, atol=1e-6)
             compared += np.count_nonzero(sure)
-    assert compared > 0.7 * 30 * len(noisy(1).positions) * population.unknowns.shape[1]
+    assert compared > 0.7 * 30 * len(noisy(1).positions) * shapes.unknowns.shape[1]
 
 
 @pytest.mark.parametrize("topology", [Topology.SPHERICAL, Topology.PUMA, Topology.SCARA, Topology.ANY])
 def test_the_slopes_of_the_category_are_derivatives(topology):
-    task, population = replace(noisy(2), topology=topology), inside(ROBOT, 10, 2)
-    slopes = category_slopes(task, population) @ population.motion
+    task, shapes = replace(noisy(2), topology=topology), inside(ROBOT, 10, 2)
+    slopes = category_slopes(task, shapes) @ shapes.motion
     for unknown in range(9):
-        more, less = (category_offsets(task, shapes) for shapes in nudged(population, unknown))
+        more, less = (category_offsets(task, shapes) for shapes in nudged(shapes, unknown))
         assert np.allclose(slopes[:, :, unknown], change(more, less), atol=1e-6)
 
 
 @pytest.mark.parametrize("robot", [ROBOT, FREE])
 def test_free_directions_lead_along_limits_and_not_beyond(robot):
     rng = np.random.default_rng(0)
-    drawn = Population.sample(robot, 400, rng).unknowns
+    drawn = Shapes.sample(robot, 400, rng).unknowns
     stretched = np.array(drawn)
     stretched[:, :8] *= rng.uniform(1.0, 4.0, (400, 1))
     stretched[:, 8:] += rng.normal(scale=0.1, size=stretched[:, 8:].shape)
-    population = Population(robot, into_limits(robot, stretched))
-    slope = rng.normal(size=population.unknowns.shape)
-    free = free_directions(population, slope)
+    shapes = Shapes(robot, into_limits(robot, stretched))
+    slope = rng.normal(size=shapes.unknowns.shape)
+    free = free_directions(shapes, slope)
     assert np.allclose(free, free.transpose(0, 2, 1))
     assert np.allclose(free @ free, free, atol=1e-9)
     downhill = -(free @ slope[..., None])[..., 0]
     assert (np.einsum("ni,ni->n", downhill, slope) <= 1e-12).all()
-    held = np.trace(free, axis1=1, axis2=2) < population.unknowns.shape[1] - 0.5
+    held = np.trace(free, axis1=1, axis2=2) < shapes.unknowns.shape[1] - 0.5
     assert 50 < np.count_nonzero(held) < 400
     # A small step oversteps the limits of the link by no more than its square.
     size = 1e-4
     step = downhill[:, :9] * size / np.linalg.norm(downhill, axis=1, keepdims=True)
-    moved = np.array(population.unknowns)
+    moved = np.array(shapes.unknowns)
     moved[:, :9] += step
     assert np.abs(into_limits(robot, moved)[:, :9] - moved[:, :9]).max() < 10.0 * size**2
 
@@ -129,27 +129,27 @@ def test_free_directions_lead_along_limits_and_not_beyond(robot):
 def test_shapes_near_an_exact_answer_arrive_there(seed):
     task, arm = planted_task(seed, 6)
     task = replace(task, floor=None)
-    here = Population.of(in_equal_arcs(arm))
+    here = Shapes.of(in_equal_arcs(arm))
     rng = np.random.default_rng(seed)
     around = into_limits(ROBOT, here.unknowns + 0.05 * rng.normal(size=(30, 9)) * np.append(np.ones(8), 0.05))
-    refined = refine(task, Population(ROBOT, around))
+    refined = refine(task, Shapes(ROBOT, around))
     assert np.median(np.sqrt(refined.cost)) < 1e-6
-    assert (into_limits(ROBOT, refined.population.unknowns) == refined.population.unknowns).all()
+    assert (into_limits(ROBOT, refined.shapes.unknowns) == refined.shapes.unknowns).all()
 
 
 @pytest.mark.parametrize("robot", [ROBOT, FREE])
 @pytest.mark.parametrize("objective", list(Objective))
 def test_costs_are_those_of_forward_kinematics_and_become_less(robot, objective):
     task = noisy(3, robot=robot, objective=objective)
-    population = Population.sample(robot, 60, np.random.default_rng(3))
-    refined = refine(task, population)
-    aims = Aims(task.positions, robot.joint_limits)
-    before = Postures.nearest(aims, population.kinematics).squared @ relative_weights(task)
+    shapes = Shapes.sample(robot, 60, np.random.default_rng(3))
+    refined = refine(task, shapes)
+    aims = TargetsSeen(task.positions_in_base, robot.joint_limits)
+    before = Postures.nearest(aims, shapes.kinematics).squared @ relative_weights(task)
     after = np.empty(60)
     for index in range(60):
-        arm = refined.population.arm(index, BasePose())
+        arm = refined.shapes.arm(index, BasePose())
         reached = arm.forward_kinematics(*refined.joints[index].T)
-        squared = np.sum((reached - task.positions) ** 2, axis=-1)
+        squared = np.sum((reached - task.positions_in_base) ** 2, axis=-1)
         after[index] = relative_weights(task) @ squared
         least, most = (
             (squared.mean(), squared.max()) if objective is Objective.MINIMAX else [after[index]] * 2
@@ -164,26 +164,26 @@ def test_the_worst_miss_is_less_where_it_counts():
     worst = {}
     for objective in Objective:
         task = noisy(4, objective=objective)
-        refined = refine(task, Population.sample(ROBOT, 60, np.random.default_rng(4)))
-        kinematics = refined.population.kinematics.each_target()
-        misses = kinematics.forward(*np.moveaxis(refined.joints, -1, 0)) - task.positions
+        refined = refine(task, Shapes.sample(ROBOT, 60, np.random.default_rng(4)))
+        kinematics = refined.shapes.kinematics.each_target()
+        misses = kinematics.forward(*np.moveaxis(refined.joints, -1, 0)) - task.positions_in_base
         worst[objective] = np.linalg.norm(misses, axis=-1).max(axis=-1).min()
     assert worst[Objective.MINIMAX] < 0.97 * worst[Objective.LEAST_SQUARES]
 
 
 def test_given_branches_are_kept():
     task = noisy(5)
-    population = Population.sample(ROBOT, 20, np.random.default_rng(5))
+    shapes = Shapes.sample(ROBOT, 20, np.random.default_rng(5))
     theta2 = np.full((20, len(task.targets)), np.pi)
-    held = refine(task, population, theta2, iterations=1)
+    held = refine(task, shapes, theta2, iterations=1)
     assert np.abs(held.joints[..., 1] - np.pi).max() < 0.6
 
 
 def test_the_parts_in_which_shapes_are_refined_do_not_matter():
     task = noisy(6, count=20)
-    population = Population.sample(ROBOT, 450, np.random.default_rng(6))
-    whole = refine(task, population, iterations=5)
-    last = refine(task, population.take(np.arange(400, 450)), iterations=5)
+    shapes = Shapes.sample(ROBOT, 450, np.random.default_rng(6))
+    whole = refine(task, shapes, iterations=5)
+    last = refine(task, shapes.take(np.arange(400, 450)), iterations=5)
     assert np.allclose(whole.cost[400:], last.cost)
     best = whole.best(10)
     assert (np.diff(best.cost) >= 0.0).all()
@@ -213,48 +213,48 @@ def test_the_curvature_of_the_norm_is_its_second_derivative_where_misses_are_lin
 
 def test_the_worst_miss_is_levelled_to_what_no_small_change_improves():
     task = noisy(8, objective=Objective.MINIMAX)
-    refined = level(task, refine(task, Population.sample(ROBOT, 60, np.random.default_rng(8))).best(12))
+    refined = level(task, refine(task, Shapes.sample(ROBOT, 60, np.random.default_rng(8))).best(12))
     rng, best = np.random.default_rng(0), refined.best(1)
-    nearby = np.repeat(best.population.unknowns, 200, axis=0)
+    nearby = np.repeat(best.shapes.unknowns, 200, axis=0)
     nearby = into_limits(ROBOT, nearby + 1e-3 * rng.normal(size=nearby.shape))
-    aims = Aims(task.positions, ROBOT.joint_limits)
-    worst = Postures.nearest(aims, Population(ROBOT, nearby).kinematics).squared.max(axis=1)
+    aims = TargetsSeen(task.positions_in_base, ROBOT.joint_limits)
+    worst = Postures.nearest(aims, Shapes(ROBOT, nearby).kinematics).squared.max(axis=1)
     assert worst.min() > (1.0 - 1e-3) * best.cost[0]
 
 
 @pytest.mark.parametrize("objective", list(Objective))
 def test_a_rigid_link_that_is_a_flat_triangle_breaks_nothing(objective):
     robot = replace(ROBOT, rigid_link=RigidLink(Interval(0.2, 0.5), Interval(0.2, 0.6)))
-    unknowns = np.array(Population.sample(robot, 20, np.random.default_rng(9)).unknowns)
+    unknowns = np.array(Shapes.sample(robot, 20, np.random.default_rng(9)).unknowns)
     unknowns[:, -1] = unknowns[:, -2] + robot.d34  # P3, P4 and P5 in line: P5 cannot move about axis 2
-    refined = refine(noisy(9, robot=robot, objective=objective), Population(robot, unknowns))
+    refined = refine(noisy(9, robot=robot, objective=objective), Shapes(robot, unknowns))
     assert np.isfinite(refined.cost).all()
 
 
 def test_where_all_targets_are_met_the_worst_miss_has_no_slope_and_warns_of_nothing():
     task, arm = planted_task(10, 5)
     task = replace(task, floor=None, objective=Objective.MINIMAX)
-    here = Population.of(in_equal_arcs(arm))
+    here = Shapes.of(in_equal_arcs(arm))
     met = refine(replace(task, objective=Objective.LEAST_SQUARES), here, iterations=40)
-    exact = met.population.kinematics.each_target().forward(*np.moveaxis(met.joints, -1, 0))[0]
+    exact = met.shapes.kinematics.each_target().forward(*np.moveaxis(met.joints, -1, 0))[0]
     task = replace(task, targets=tuple(PointTarget(f"t{i}", point) for i, point in enumerate(exact)))
-    refined = level(task, refine(task, met.population))
+    refined = level(task, refine(task, met.shapes))
     assert refined.cost[0] < 1e-18
 
 
 def test_shapes_are_moved_out_of_an_obstacle_though_only_the_rigid_link_is_in_it():
     task, arm = planted_task(11, 3)
-    point = task.positions[0]
+    point = task.positions_in_base[0]
     end = arm.end_frame[1]
     joints, _ = arm.closest_joints(point)
     middle = 0.5 * (point + BasePose(yaw=float(joints[0])).to_task(end))
     thin = Obstacle("ball", Sphere(middle, 0.012))
     task = replace(task, floor=None, obstacles=(thin,))
-    around = np.repeat(Population.of(in_equal_arcs(arm)).unknowns, 20, axis=0)
+    around = np.repeat(Shapes.of(in_equal_arcs(arm)).unknowns, 20, axis=0)
     around = into_limits(ROBOT, around + 0.05 * np.random.default_rng(0).normal(size=around.shape))
-    before = refine(replace(task, obstacles=()), Population(ROBOT, around))
-    depth = overlaps(task, before.population, before.joints).max(axis=1)
+    before = refine(replace(task, obstacles=()), Shapes(ROBOT, around))
+    depth = overlaps(task, before.shapes, before.joints).max(axis=1)
     after = cleared(task, before.take(np.flatnonzero(depth > 0.0)))
-    now = overlaps(task, after.population, after.joints).max(axis=1)
+    now = overlaps(task, after.shapes, after.joints).max(axis=1)
     assert len(now)
     assert np.median(now) < 0.2 * np.median(depth[depth > 0.0])

@@ -134,7 +134,7 @@ def test_that_no_surface_passes_is_called_proven_only_where_algebra_proves_it(mo
     monkeypatch.setattr(release, "_released", lambda *_: None)
     monkeypatch.setattr(release, "_base_moved", lambda *_: None)
     assert "none was found that passes through all the targets" in explain(solution).notes[0]
-    monkeypatch.setattr(release, "exact_designs", lambda _: ())
+    monkeypatch.setattr(release, "exact_arms", lambda _: ())
     assert "by algebra none passes exactly through all the targets" in explain(solution).notes[0]
 
 

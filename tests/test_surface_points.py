@@ -22,7 +22,7 @@ def written(tmp_path, text, task=TASK):
 @pytest.mark.parametrize("header", ["", "x,y,z\n", "\n X, Y ,z\n", "\ufeffx,y,z\r\n"])
 def test_points_are_targets_in_metres_with_or_without_a_header(tmp_path, header):
     task = load_task(written(tmp_path, header + "500, 10,200\n\n-3e2,400.5,180\n"))
-    assert np.array_equal(task.positions, [[0.5, 0.01, 0.2], [-0.3, 0.4005, 0.18]])
+    assert np.array_equal(task.positions_in_base, [[0.5, 0.01, 0.2], [-0.3, 0.4005, 0.18]])
     assert np.array_equal(task.tolerances, [0.005, 0.005])
     assert [target.name for target in task.targets] == ["surface point 1", "surface point 2"]
 

@@ -20,7 +20,7 @@ def test_the_part_shows_where_no_target_is_as_precisely_as_all_of_them_for_every
     for seed in range(20):
         part = thinned(task, 40, np.random.default_rng(seed))
         assert len(part.targets) == 40
-        angles = np.sort(np.degrees(np.arctan2(*part.positions[:, 1::-1].T)) % 360.0)
+        angles = np.sort(np.degrees(np.arctan2(*part.positions_in_base[:, 1::-1].T)) % 360.0)
         widest = np.max(np.diff(angles, append=angles[0] + 360.0))
         assert widest < 25.0 + 2.0 * 335.0 / 40.0
 

@@ -7,26 +7,26 @@ import pytest
 from planted import ROBOT, noisy, planted_task
 
 from synth.synthesis.starts.refined import Refined
-from synth.synthesis.starts.shapes import Population
-from synth.synthesis.starts.start_points import starts
+from synth.synthesis.starts.shapes import Shapes
+from synth.synthesis.starts.start_points import start_points
 from synth.synthesis.starts.valleys import Valleys
 from synth.watch import Watch
 
 
 def drawn(seed, count=40):
-    return Population.sample(ROBOT, count, np.random.default_rng(seed))
+    return Shapes.sample(ROBOT, count, np.random.default_rng(seed))
 
 
 def explored(task, seed, stop=None, count=40):
     rng = np.random.default_rng(seed)
     valleys = replace(Valleys.of(task, drawn(seed, count)), watch=Watch(stop=stop))
-    return valleys, valleys.explored(lambda: Population.sample(ROBOT, 40, rng), rng)
+    return valleys, valleys.explored(lambda: Shapes.sample(ROBOT, 40, rng), rng)
 
 
 def valleys_of(*costs, drawn):
     """Valleys in which fresh shapes ended with these root mean squared misses, m."""
     count = len(costs)
-    shapes = Population.sample(ROBOT, count, np.random.default_rng(0))
+    shapes = Shapes.sample(ROBOT, count, np.random.default_rng(0))
     refined = Refined(shapes, np.zeros((count, 1, 2)), np.square(costs))
     return Valleys(noisy(0, count=1), Watch(), refined, refined.cost, drawn)
 
@@ -66,25 +66,27 @@ def test_exploring_ends_when_it_is_told_to():
 
 def test_starts_are_distinct_and_the_best_of_the_first_step_comes_first():
     task = noisy(1, count=12)
-    first, found = list(starts(task, 0, quick=True)), list(starts(task, 0))
+    first, found = list(start_points(task, 0, quick=True)), list(start_points(task, 0))
     costs = [start.cost for start in first]
     assert costs == sorted(costs)
     assert min(start.cost for start in found) <= costs[0]
     assert len({start.arm.shape.curvatures.tobytes() for start in found}) == len(found)
-    misses = [np.mean(start.arm.closest_joints(task.positions)[1] ** 2) for start in found]
+    misses = [np.mean(start.arm.closest_joints(task.positions_in_base)[1] ** 2) for start in found]
     assert np.all(np.array([start.cost for start in found]) >= np.array(misses) * (1.0 - 1e-6))
 
 
 def test_starts_of_many_targets_state_their_cost_for_all_of_them():
     task = noisy(2, count=60)
-    start = next(starts(task, 0))
+    start = next(start_points(task, 0))
     assert start.joints.shape == (60, 2)
-    assert np.isclose(start.cost, np.mean(start.arm.closest_joints(task.positions)[1] ** 2), rtol=1e-9)
+    assert np.isclose(
+        start.cost, np.mean(start.arm.closest_joints(task.positions_in_base)[1] ** 2), rtol=1e-9
+    )
 
 
 def test_quick_starts_are_those_of_the_first_step():
     task = replace(planted_task(3, 5)[0], floor=None)
-    quick, whole = list(starts(task, 0, quick=True)), list(starts(task, 0))
+    quick, whole = list(start_points(task, 0, quick=True)), list(start_points(task, 0))
     for one, other in zip(quick, whole, strict=False):
         assert np.array_equal(one.arm.shape.curvatures, other.arm.shape.curvatures)
     assert len(quick) <= len(whole)

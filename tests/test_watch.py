@@ -12,7 +12,7 @@ from synth.synthesis.all_targets import verified_in_time
 from synth.synthesis.check.verification import verify
 from synth.synthesis.run import Run
 from synth.synthesis.starts.refinement import refine
-from synth.synthesis.starts.shapes import Population
+from synth.synthesis.starts.shapes import Shapes
 from synth.watch import Watch
 
 
@@ -225,7 +225,7 @@ def test_no_step_of_a_refinement_is_taken_after_the_time():
         steps.append(1)
         return len(steps) == 3
 
-    population = Population.sample(ROBOT, 50, np.random.default_rng(0))
-    stopped = refine(noisy(5), population, is_up=is_up)
+    shapes = Shapes.sample(ROBOT, 50, np.random.default_rng(0))
+    stopped = refine(noisy(5), shapes, is_up=is_up)
     assert len(steps) == 3
-    assert (stopped.cost == refine(noisy(5), population, iterations=3).cost).all()
+    assert (stopped.cost == refine(noisy(5), shapes, iterations=3).cost).all()

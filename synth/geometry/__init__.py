@@ -13,7 +13,7 @@ distances:
          +------> WorkspaceSurface <----+
 
 The way back from targets is exact for few of them: five have at most two designs, four with a known R at
-most six (`designs_through_five`, `designs_through_four`), fewer have families (`sample_designs`), and so
+most six (`arms_through_five`, `arms_through_four`), fewer have families (`sample_exact_arms`), and so
 have targets in a plane or on a sphere (`planes_through`, `spheres_through`, `circle_through`). Every arm
 has one `cognate`, another arm with the same surface.
 
@@ -33,16 +33,16 @@ from synth.geometry.distances import (
     squared_distances,
 )
 from synth.geometry.exact import (
-    Designs,
+    ExactArms,
     PlaneFamily,
     SphereFamily,
+    arms_through_five,
+    arms_through_four,
     circle_through,
     cognate,
-    designs_through_five,
-    designs_through_four,
     is_generic,
     planes_through,
-    sample_designs,
+    sample_exact_arms,
     spheres_through,
 )
 from synth.geometry.gamma import WorkspaceSurface, distance_polynomials, gamma_determinant
@@ -57,7 +57,7 @@ __all__ = [
     "Capsule",
     "Category",
     "CategoryDistances",
-    "Designs",
+    "ExactArms",
     "Invariants",
     "PlaneFamily",
     "Solid",
@@ -65,21 +65,21 @@ __all__ = [
     "SphereFamily",
     "SweptCircle",
     "WorkspaceSurface",
+    "arms_through_five",
+    "arms_through_four",
     "cayley_menger",
     "cayley_menger_bideterminant",
     "circle_through",
     "classify",
     "cognate",
     "critical_angles",
-    "designs_through_five",
-    "designs_through_four",
     "distance_polynomials",
     "gamma_determinant",
     "is_generic",
     "least_values",
     "planes_through",
     "realise",
-    "sample_designs",
+    "sample_exact_arms",
     "sampling_angles",
     "spheres_through",
     "squared_distances",

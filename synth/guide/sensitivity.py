@@ -97,7 +97,7 @@ def _tried(task: Task, design: Design, position: float, direction: float) -> tup
 
     def used(shifts: FloatArray, turns: FloatArray) -> float:
         """Return the largest share of its slack that an error takes from a target."""
-        lost = misses_displaced(arm, task.positions[barely], shifts, turns) - check.misses[barely]
+        lost = misses_displaced(arm, task.positions_in_base[barely], shifts, turns) - check.misses[barely]
         return float(np.max(lost / np.maximum(slack[barely], _NO_SLACK)))
 
     for _ in range(_TRIALS):

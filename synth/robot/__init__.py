@@ -25,10 +25,10 @@ from synth.robot.link import (
     arc_motion,
     chain_end,
     chain_points,
-    improved,
     link_to_pose,
     links_to_poses,
     pose_miss,
+    stepped,
     why_no_link,
 )
 from synth.robot.workspace import SurfaceMesh, Workspace
@@ -57,12 +57,12 @@ __all__ = [
     "chain_end",
     "chain_points",
     "closest_joints",
-    "improved",
     "into_turn",
     "link_to_pose",
     "links_to_poses",
     "no_triangle",
     "pose_miss",
+    "stepped",
     "turned",
     "why_no_link",
 ]

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.synthesis.check import verify
-from synth.synthesis.many_targets import levelled, ranked
-from synth.synthesis.starts import improved, random_part
+from synth.synthesis.many_targets import least_worst, ranked
+from synth.synthesis.starts import random_part, refined_for_all
 from synth.synthesis.wanted import Design, best_of
 from synth.task import Objective
 
@@ -75,9 +75,9 @@ def for_all_targets(task: Task, designs: Sequence[Design], seed: int, watch: Wat
         if verified and watch.is_up():
             break
         with watch.on("solving"):
-            arm = improved(task, found, watch)
+            arm = refined_for_all(task, found, watch)
             if task.objective is Objective.MINIMAX:
-                arm = levelled(task, arm, watch)
+                arm = least_worst(task, arm, watch)
         watch.tell(phase="verifying with all targets")
         with watch.on("verifying"):
             seen, design = verified_in_time(task, arm, watch)

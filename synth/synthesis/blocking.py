@@ -20,7 +20,7 @@ from synth.synthesis.check import verify
 from synth.synthesis.relaxed_limits import limits_of, without_limits
 from synth.synthesis.solution import Release, Solution
 from synth.synthesis.solve import follow
-from synth.synthesis.starts import exact_designs
+from synth.synthesis.starts import exact_arms
 from synth.watch import Watch
 
 if TYPE_CHECKING:
@@ -122,7 +122,7 @@ def _why_none_does(solution: Solution, watch: Watch) -> str:
 
 def _algebra_knows_none(solution: Solution) -> bool:
     """Whether no arm with this rigid link reaches the targets exactly, whatever its link: a proof."""
-    return exact_designs(solution.task) == ()
+    return exact_arms(solution.task) == ()
 
 
 def _released(limit: Limit, solution: Solution, watch: Watch) -> Release | None:

@@ -15,8 +15,8 @@ import numpy as np
 
 from synth.synthesis.starts import (
     SAMPLE,
-    Population,
     Refined,
+    Shapes,
     as_it_is_and_turned,
     level,
     random_part,
@@ -80,7 +80,7 @@ def ranked(task: Task, arms: Sequence[Arm], seed: int, watch: Watch) -> list[Arm
     return [*reaching, *(arm for _, arm in sorted(missing, key=lambda pair: pair[0]))]
 
 
-def levelled(task: Task, arm: Arm, watch: Watch) -> Arm:
+def least_worst(task: Task, arm: Arm, watch: Watch) -> Arm:
     """Return an arm whose worst miss over all targets is less.
 
     Those missed most of all, up to the size of the larger part, stand for all; once the arm has moved others
@@ -105,8 +105,8 @@ def levelled(task: Task, arm: Arm, watch: Watch) -> Arm:
         worst = task.table.take(np.sort(np.argsort(-least, kind="stable")[:SAMPLE]))
         joints, _misses = arm.closest_joints(worst.positions)
         some = replace(task, targets=worst, objective=Objective.MINIMAX)
-        start = Refined(Population.of(arm), joints[None], np.zeros(1))
-        lower = level(some, start, watch.is_up).population.arm(0, task.base)
+        start = Refined(Shapes.of(arm), joints[None], np.zeros(1))
+        lower = level(some, start, watch.is_up).shapes.arm(0, task.base)
         misses = relative_misses(task, lower)
         if misses.max() >= least.max():
             break

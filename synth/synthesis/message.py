@@ -9,7 +9,7 @@ import numpy as np
 
 from synth.errors import SynthError
 from synth.rounding import rounded_up
-from synth.synthesis.starts import exact_designs
+from synth.synthesis.starts import exact_arms
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -96,7 +96,7 @@ def _what_misses(task: Task, design: Design) -> list[str]:
 
 def _why_not_exact(task: Task) -> tuple[str, ...]:
     """Return a sentence if algebra knows of no arm at all that meets the targets exactly."""
-    if exact_designs(task) != ():
+    if exact_arms(task) != ():
         return ()
     count = len(task.targets)
     return (f"no arm with this rigid link passes exactly through such {count} targets, by algebra",)

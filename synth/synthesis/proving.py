@@ -14,7 +14,7 @@ from synth.errors import SolverError
 from synth.robot import Arm
 from synth.synthesis.bound import Bound, prove
 from synth.synthesis.nlp import Structure, shared_nlp
-from synth.synthesis.starts import ARCS, starts
+from synth.synthesis.starts import ARCS, start_points
 from synth.task import Objective
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ class Certifier:
             self._polish(design.arm, design.verification.joints)
         if self._best() > _GAP:
             # The shapes so far were searched for by the task's own objective, maybe another one.
-            for start in islice(starts(self._minimax, self.seed, watch=self.watch), _STARTS):
+            for start in islice(start_points(self._minimax, self.seed, watch=self.watch), _STARTS):
                 self._polish(start.arm, start.joints)
         return prove(
             self.task,

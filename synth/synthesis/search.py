@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from synth.synthesis.polishing import Polishing
-from synth.synthesis.starts import Start, in_equal_arcs, starts
+from synth.synthesis.starts import Start, in_equal_arcs, start_points
 from synth.synthesis.wanted import Design, leaves_no_wish, objective, wished
 from synth.task import Objective
 
@@ -142,7 +142,7 @@ class Search:
         return sum_of_squares and not self.polishing.found and self._may_be_better(start)
 
     def _start_points(self, *, quick: bool) -> Iterator[Start]:
-        candidates = starts(self._task, self._seed, quick=quick, watch=self._watch)
+        candidates = start_points(self._task, self._seed, quick=quick, watch=self._watch)
         while True:
             with self._watch.on("screening"):
                 start = next(candidates, None)

@@ -117,7 +117,7 @@ class Task:
         return TargetTable.of(self.targets)
 
     @cached_property
-    def positions(self) -> FloatArray:
+    def positions_in_base(self) -> FloatArray:
         """Positions of all targets in the base frame, shape (n, 3), m."""
         return frozen(self.base.to_base(self.table.positions))
 

@@ -67,7 +67,7 @@ def unmeant_sizes_of_robot(robot: Robot) -> list[Mistake]:
 def unmeant_distances(task: Task, unit: str | None = None) -> list[Mistake]:
     """Return what is wrong with the distances of all targets from P1, beside what the robot reaches."""
     reach = reach_of(task.robot)
-    distances = np.linalg.norm(task.positions, axis=1)
+    distances = np.linalg.norm(task.positions_in_base, axis=1)
     nearest, farthest = float(distances.min()), float(distances.max())
     if _NEAR * reach <= farthest and nearest <= _FAR * reach:
         return []

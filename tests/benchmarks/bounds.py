@@ -96,9 +96,9 @@ def main() -> None:
         wrong = asked = seed = 0
         while asked < arguments.samples:
             rng = np.random.default_rng([seed, 3])
-            population = shapes_about(ROBOT, 1500, rng)
-            task = task_about(population, int(rng.integers(1, 9)), rng)
-            more, of, _ = contradictions(task, population, rng)
+            shapes = shapes_about(ROBOT, 1500, rng)
+            task = task_about(shapes, int(rng.integers(1, 9)), rng)
+            more, of, _ = contradictions(task, shapes, rng)
             wrong, asked, seed = wrong + more, asked + of, seed + 1
         print(f"contradicted by a sampled shape: {wrong} of {asked}")
 

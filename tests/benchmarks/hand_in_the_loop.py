@@ -143,13 +143,15 @@ def trial(guide, task, designs, operator, markers, calibrated, corrections):
     arm = operator.stiffened(arm)
     fit = operator.measured(arm, wanted, markers, calibrated)
     joints = best_joints(fit.arm, task, planned)
-    worst = float(np.linalg.norm(arm.forward(joints) - task.positions, axis=-1).max())
+    worst = float(np.linalg.norm(arm.forward(joints) - task.positions_in_base, axis=-1).max())
     if guide in {"a", "b", "pose"}:
         return Trial(worst, made)
     settings = best_settings(task, ROBOT, fit, joints)
     asked = np.array([*settings.base, settings.along, settings.radius])
     arm = with_settings(arm, asked + operator.rng.normal(size=5) * SETTING_ERROR)
-    set_worst = float(np.linalg.norm(arm.forward(settings.outlook.joints) - task.positions, axis=-1).max())
+    set_worst = float(
+        np.linalg.norm(arm.forward(settings.outlook.joints) - task.positions_in_base, axis=-1).max()
+    )
     return Trial(worst, made, locked, told, set_worst)
 
 

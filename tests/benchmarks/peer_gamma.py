@@ -14,7 +14,7 @@ from synth.errors import GeometryError
 from synth.geometry import ArmDistances, SweptCircle
 from synth.geometry._gamma_polynomials import workspace_polynomials
 from synth.geometry.distances import realise
-from synth.synthesis.starts.shapes import Population
+from synth.synthesis.starts.shapes import Shapes
 
 if TYPE_CHECKING:
     from peer_race import Race
@@ -85,9 +85,9 @@ def raw_gamma(race: Race) -> None:
     solver = ca.nlpsol("raw", "ipopt", {"x": s, "f": objective, "g": constraints}, options)
     lower, upper = _longest(robot)
     while not race.over:
-        population = Population(robot, race.starts())
-        for index in range(len(population.length)):
-            start = population.arm(index, race.task.base).squared_distances[[0, 0, 1, 1], [2, 3, 2, 3]]
+        shapes = Shapes(robot, race.starts())
+        for index in range(len(shapes.length)):
+            start = shapes.arm(index, race.task.base).squared_distances[[0, 0, 1, 1], [2, 3, 2, 3]]
             answer = solver(x0=start, lbx=lower, ubx=upper, lbg=0.0, ubg=math.inf)["x"]
             try:
                 misses = surface_misses(robot, np.asarray(answer.full()).ravel(), targets)
@@ -116,7 +116,7 @@ def scip_bound(task: Task, seconds: float) -> tuple[float, float, float, str]:
         model.addCons(q[-1] == term)
     far = robot.d12 + robot.link.length.upper + robot.rigid_link.d35.upper + robot.d34
     worst = model.addVar("worst", lb=0.0, ub=far)
-    for i, (x, y, z_target) in enumerate(task.positions):
+    for i, (x, y, z_target) in enumerate(task.positions_in_base):
         rho, z = model.addVar(f"rho{i}", lb=0.0, ub=far), model.addVar(f"z{i}", lb=-far, ub=far)
         n = model.addVar(f"N{i}", lb=0.0, ub=far**2)
         model.addCons(n == rho * rho + z * z)

@@ -13,7 +13,7 @@ from compiled_link import UNKNOWNS, constants
 from compiled_residuals import jacobian, residuals
 
 from synth.synthesis.check.verification import verify
-from synth.synthesis.starts.shapes import Population, into_limits
+from synth.synthesis.starts.shapes import Shapes, into_limits
 from synth.task import PointTarget, Task
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ class Race:
 
     def __post_init__(self) -> None:
         self.rng = np.random.default_rng(self.seed)
-        self.targets = np.ascontiguousarray(self.task.positions)
+        self.targets = np.ascontiguousarray(self.task.positions_in_base)
         self.constants = constants(self.task)
         self.arguments = (self.constants, self.targets)
         self._least, self._times, self._finished = math.inf, 0, False
@@ -122,7 +122,7 @@ class Race:
         return self.over
 
     def arm(self, x: np.ndarray) -> Arm:
-        return Population(self.task.robot, into_limits(self.task.robot, x[None])).arm(0, self.task.base)
+        return Shapes(self.task.robot, into_limits(self.task.robot, x[None])).arm(0, self.task.base)
 
     def offer_arm(self, arm: Arm, joints: np.ndarray | None = None) -> bool:
         """Let the independent check judge a shape; return whether the method may stop."""
@@ -142,7 +142,7 @@ class Race:
 
     def starts(self, size: int = 64) -> np.ndarray:
         """Return random shapes within the limits, shape (size, 9)."""
-        return np.array(Population.sample(self.task.robot, size, self.rng).unknowns)
+        return np.array(Shapes.sample(self.task.robot, size, self.rng).unknowns)
 
     def result(self) -> Result:
         """Return what was reached; a shape that did not reach the goal is judged now."""

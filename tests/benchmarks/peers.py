@@ -36,7 +36,7 @@ from planted import planted_task
 
 from synth.synthesis import solve
 from synth.synthesis.solve import follow
-from synth.synthesis.starts.shapes import Population
+from synth.synthesis.starts.shapes import Shapes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -54,21 +54,21 @@ def task_of(kind: int, seed: int) -> Task:
     return noisy_task(seed) if kind == NOISY else planted_task(seed, kind)[0]
 
 
-def model_difference(task: Task, shapes: int = 20) -> float:
+def model_difference(task: Task, count: int = 20) -> float:
     """Return by how much the compiled misses of random shapes differ from those of `synth`, m.
 
     The links are as thin as a thread here: how thick ones keep clear, the independent check judges.
     """
-    population = Population.sample(task.robot, shapes, np.random.default_rng(0))
+    shapes = Shapes.sample(task.robot, count, np.random.default_rng(0))
     thread = replace(task.robot, link=replace(task.robot.link, diameter=-1.0))
-    targets = np.ascontiguousarray(task.positions)
+    targets = np.ascontiguousarray(task.positions_in_base)
     known_to_them = constants(replace(task, robot=thread))
     return max(
         np.abs(
-            compiled_miss.misses(np.array(population.unknowns[i]), known_to_them, targets)
-            - population.arm(i, task.base).closest_joints(task.positions)[1]
+            compiled_miss.misses(np.array(shapes.unknowns[i]), known_to_them, targets)
+            - shapes.arm(i, task.base).closest_joints(task.positions_in_base)[1]
         ).max()
-        for i in range(shapes)
+        for i in range(count)
     )
 
 

@@ -1,7 +1,7 @@
 """Exact synthesis: the arms whose workspace surface passes through given targets, by algebra alone."""
 
 from synth.geometry.exact.cognate import cognate
-from synth.geometry.exact.designs import Designs, designs_through_five, designs_through_four, is_generic
+from synth.geometry.exact.exact_arms import ExactArms, arms_through_five, arms_through_four, is_generic
 from synth.geometry.exact.families import (
     PlaneFamily,
     SphereFamily,
@@ -9,18 +9,18 @@ from synth.geometry.exact.families import (
     planes_through,
     spheres_through,
 )
-from synth.geometry.exact.sampling import sample_designs
+from synth.geometry.exact.sampling import sample_exact_arms
 
 __all__ = [
-    "Designs",
+    "ExactArms",
     "PlaneFamily",
     "SphereFamily",
+    "arms_through_five",
+    "arms_through_four",
     "circle_through",
     "cognate",
-    "designs_through_five",
-    "designs_through_four",
     "is_generic",
     "planes_through",
-    "sample_designs",
+    "sample_exact_arms",
     "spheres_through",
 ]

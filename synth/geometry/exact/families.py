@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.errors import GeometryError
-from synth.geometry.exact.designs import TOLERANCE
+from synth.geometry.exact.exact_arms import TOLERANCE
 from synth.geometry.invariants import Invariants
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.errors import GeometryError
-from synth.geometry.exact.designs import TOLERANCE, Designs, designs_through_five, designs_through_four
-from synth.geometry.exact.polish import misses
+from synth.geometry.exact.exact_arms import TOLERANCE, ExactArms, arms_through_five, arms_through_four
+from synth.geometry.exact.newton import misses
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -20,7 +20,7 @@ _SETS_PER_DESIGN = 8
 _ROUNDS = 16
 
 
-def sample_designs(
+def sample_exact_arms(
     targets: ArrayLike,
     count: int,
     *,
@@ -28,7 +28,7 @@ def sample_designs(
     radius: float | None = None,
     seed: int | np.random.Generator = 0,
     tolerance: float = TOLERANCE,
-) -> Designs:
+) -> ExactArms:
     """Return designs through one to four targets, or one to three with R known.
 
     The targets are completed to five (four) by points drawn uniformly in the half-plane of (rho, z) over
@@ -71,14 +71,14 @@ def sample_designs(
         drawn = sets[:, len(given) :]
         drawn[..., 0] = rng.uniform(0.0, reach, drawn.shape[:-1])
         drawn[..., 2] = rng.uniform(-reach, reach, drawn.shape[:-1])
-        designs = designs_through_five(sets) if radius is None else designs_through_four(sets, radius)
+        designs = arms_through_five(sets) if radius is None else arms_through_four(sets, radius)
         rows = designs.values[designs.found]
         miss = misses(rows, rho, z)
         values = np.concatenate([values, rows[miss <= tolerance]])
         worst = np.concatenate([worst, miss[miss <= tolerance]])
         if len(values) >= count:
             break
-    return Designs(values[:count], worst[:count])
+    return ExactArms(values[:count], worst[:count])
 
 
 def _distinct(rho: FloatArray, z: FloatArray, tolerance: float) -> FloatArray:

@@ -108,9 +108,11 @@ def best_joints(arm: StandingArm, task: Task, planned: FloatArray) -> FloatArray
             obstacles
             and of the arm itself; so another branch is taken only where it is much better.
     """
-    near = arm.following(planned, task.positions)
-    closest = arm.closest(task.positions)
-    misses = [np.linalg.norm(arm.forward(joints) - task.positions, axis=-1) for joints in (near, closest)]
+    near = arm.following(planned, task.positions_in_base)
+    closest = arm.closest(task.positions_in_base)
+    misses = [
+        np.linalg.norm(arm.forward(joints) - task.positions_in_base, axis=-1) for joints in (near, closest)
+    ]
     other = misses[1] < misses[0] - (np.inf if task.obstacles else _MUCH_BETTER)
     return np.where(other[:, None], closest, near)
 
@@ -137,7 +139,7 @@ def check_arm(
         hand: The hand; the published one unless told.
     """
     hand = hand or Hand()
-    targets, tolerances = task.positions, task.tolerances
+    targets, tolerances = task.positions_in_base, task.tolerances
     joints = best_joints(fit.arm, task, designs[0].verification.joints)
     now = outlook(fit, joints, targets, tolerances)
     stiffened = now if stiff else after_stiffening(fit, joints, targets, tolerances, hand)
@@ -169,7 +171,7 @@ def _correction(
 ) -> Correction:
     """Return the correction that is worth most."""
     weights = task.tolerances.min() / task.tolerances
-    targets, arms = task.positions, [design.arm for design in designs]
+    targets, arms = task.positions_in_base, [design.arm for design in designs]
     # What a correction leaves is corrected by the next one. Where the link cannot take what is best, a
     # nearer aim.
     for share in (hand.share**corrections, hand.share, 1.0):

@@ -32,8 +32,8 @@ def loss_at_floor(task: Task, arm: StandingArm, joints: FloatArray, hand: Hand) 
         hand: The hand: at its floor, joints at their best afterwards.
     """
     arms = arm.moved(errors(hand.floor, _SAMPLES, np.random.default_rng(0)))
-    reached = arms.forward(arms.following(joints, task.positions))
-    misses = np.linalg.norm(reached - task.positions, axis=-1)
+    reached = arms.forward(arms.following(joints, task.positions_in_base))
+    misses = np.linalg.norm(reached - task.positions_in_base, axis=-1)
     return float((misses / task.tolerances).max(axis=1).mean() * task.tolerances.min())
 
 
@@ -65,7 +65,7 @@ def most_forgiving(task: Task, designs: Sequence[Design], hand: Hand | None = No
         arm = StandingArm.of(design.arm, joint1)
         joints = design.verification.joints
         candidates.append((loss_at_floor(task, arm, joints, hand), design, arm, design))
-        move, there, _ = aimed(arm, np.zeros(6), joints, task.positions, weights, hand, 0.0)
+        move, there, _ = aimed(arm, np.zeros(6), joints, task.positions_in_base, weights, hand, 0.0)
         moved = arm.moved(move)
         candidates.append((loss_at_floor(task, moved, there, hand), None, moved, design))
     for loss, planned, arm, origin in sorted(candidates, key=lambda each: each[0]):

@@ -83,16 +83,16 @@ def best_settings(
     values = np.zeros(5)
     best, least = values, np.inf
     for _ in range(_ROUNDS):
-        values, joints = _least_squares(fit.arm, values, reach, joints, task.positions, weights)
+        values, joints = _least_squares(fit.arm, values, reach, joints, task.positions_in_base, weights)
         arm = with_settings(fit.arm, values)
-        misses = np.linalg.norm(arm.forward(joints) - task.positions, axis=-1) / task.tolerances
+        misses = np.linalg.norm(arm.forward(joints) - task.positions_in_base, axis=-1) / task.tolerances
         if misses.max() < least:
             best, least = values, float(misses.max())
         # Lawson (1961): weights that grow with the miss lead to the least largest one.
         weights = weights * np.sqrt(misses / misses.mean()) if misses.mean() > 1e-6 else weights
     arm = with_settings(fit.arm, best)
-    joints = arm.following(joints, task.positions)
-    then = outlook(replace(fit, arm=arm), joints, task.positions, task.tolerances)
+    joints = arm.following(joints, task.positions_in_base)
+    then = outlook(replace(fit, arm=arm), joints, task.positions_in_base, task.tolerances)
     from_p3 = arm.offset + robot.tip_offset
     d35, d45 = np.hypot(from_p3, arm.radius), np.hypot(robot.d34 - from_p3, arm.radius)
     return Settings(best[:3], float(best[3]), float(best[4]), float(d35), float(d45), arm, then)

@@ -41,12 +41,12 @@ class SweptTarget:
 
 def swept_targets(calibration: Calibration, task: Task) -> list[SweptTarget]:
     """Return what becomes of each target of a task on a calibrated arm."""
-    joints = calibration.arm.closest(task.positions)
+    joints = calibration.arm.closest(task.positions_in_base)
     arms = calibration.samples(_SAMPLES)
     there = np.broadcast_to(joints, (_SAMPLES, *joints.shape))
     if not calibration.joints_known:
-        there = arms.following(there, task.positions)
-    misses = np.linalg.norm(arms.forward(there) - task.positions, axis=-1)
+        there = arms.following(there, task.positions_in_base)
+    misses = np.linalg.norm(arms.forward(there) - task.positions_in_base, axis=-1)
     outlook = Outlook(joints, misses, task.tolerances)
     return [
         SweptTarget(

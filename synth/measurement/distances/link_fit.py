@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.robot import ANYWHERE, ArcChains, Arm, BasePose, Interval, improved
+from synth.robot import ANYWHERE, ArcChains, Arm, BasePose, Interval, stepped
 from synth.rounding import told_apart
 
 if TYPE_CHECKING:
@@ -130,7 +130,7 @@ class _Bounds:
 def _best(chains: ArcChains, bounds: _Bounds, x: FloatArray, lower: FloatArray, upper: FloatArray) -> LinkFit:
     """Return the gentlest of the shapes improved to keep bounds or, if none does, the nearest one."""
     robot = bounds.robot
-    x, _ = improved(chains, bounds, x, _STEPS)
+    x, _ = stepped(chains, bounds, x, _STEPS)
     rigid = robot.rigid_link
     arms = [Arm(robot, chains.shape(one), rigid.d35.lower, rigid.d45.lower, BasePose()) for one in x[:, :-1]]
     beyond = np.array([_beyond(arm, lower, upper) for arm in arms])

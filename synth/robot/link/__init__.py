@@ -1,7 +1,7 @@
 """The malleable link: its shapes, its limits, where it can end."""
 
 from synth.robot.link.arc_chains import ArcChains
-from synth.robot.link.chain_steps import improved
+from synth.robot.link.chain_steps import stepped
 from synth.robot.link.end_pose import ANYWHERE, PoseMiss, pose_miss
 from synth.robot.link.pose_proofs import why_no_link
 from synth.robot.link.pose_search import link_to_pose, links_to_poses
@@ -17,9 +17,9 @@ __all__ = [
     "arc_motion",
     "chain_end",
     "chain_points",
-    "improved",
     "link_to_pose",
     "links_to_poses",
     "pose_miss",
+    "stepped",
     "why_no_link",
 ]

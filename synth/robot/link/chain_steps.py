@@ -75,7 +75,7 @@ class Wish:
         return np.column_stack([-x[:, :-2], -0.5 * shorter / np.sqrt(self.chains.arcs), still])
 
 
-def improved(chains: ArcChains, aim: Aim, starts: FloatArray, steps: int) -> tuple[FloatArray, FloatArray]:
+def stepped(chains: ArcChains, aim: Aim, starts: FloatArray, steps: int) -> tuple[FloatArray, FloatArray]:
     """Improve chains by damped Gauss-Newton steps within their limits.
 
     Args:
@@ -126,14 +126,14 @@ def eased(chains: ArcChains, aim: Aim, x: FloatArray, wish: Wish) -> FloatArray:
         centre = x[going] + stride[going, None] * wish.direction(x[going])
         exact = np.full(len(going), 1e-9)
         moved = constrained(chains, some, x[going], (centre, slope, goal), exact)
-        moved, left = improved(chains, some, moved, 4)
+        moved, left = stepped(chains, some, moved, 4)
         gain = 1.0 - wish.cost(moved) / np.maximum(cost[going], 1e-300)
         better = (left <= _ON_THE_WAY) & (gain > 0.0)
         x[going[better]], cost[going[better]] = moved[better], wish.cost(moved[better])
         settled[going] = np.where(better & (gain > _SETTLED), 0, settled[going] + better)
         stride[going] *= np.where(better, 1.5, 0.4)
         stride = np.minimum(stride, 1.0)
-    return improved(chains, aim, x, _PATIENCE)[0]
+    return stepped(chains, aim, x, _PATIENCE)[0]
 
 
 def constrained(

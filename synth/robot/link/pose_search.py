@@ -20,7 +20,7 @@ import numpy as np
 
 from synth.robot.hardware import turned
 from synth.robot.link.arc_chains import ArcChains
-from synth.robot.link.chain_steps import ARRIVED, Wish, eased, improved
+from synth.robot.link.chain_steps import ARRIVED, Wish, eased, stepped
 from synth.robot.link.end_pose import ANYWHERE, EndPoses, pose_miss, within
 from synth.robot.link.shape import chain_end
 
@@ -115,7 +115,7 @@ class _Search:
                 return best
             some = poses.take(open_)
             chains, x = self.nearest(some, count)
-            x, left = improved(chains, some.repeated(count), x, _STEPS)
+            x, left = stepped(chains, some.repeated(count), x, _STEPS)
             self.keep_best(best, open_, poses, (chains, x, left))
         # At its limits a link is arcs of the tightest bend and straights, each of its own length.
         still = np.isin(open_, _missing(best))
@@ -126,7 +126,7 @@ class _Search:
         x = np.take_along_axis(x, nearest, axis=1).reshape(-1, x.shape[-1])
         finer, k = chains.refined(x[:, :-1], _PARTS)
         some = poses.take(open_[still]).repeated(_FINE_STARTS)
-        x, left = improved(finer, some, np.column_stack([k, x[:, -1]]), _FINE_STEPS)
+        x, left = stepped(finer, some, np.column_stack([k, x[:, -1]]), _FINE_STEPS)
         self.keep_best(best, open_[still], poses, (finer, x, left))
         return best
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.robot import ANYWHERE, ArcChains, improved, turned
+from synth.robot import ANYWHERE, ArcChains, stepped, turned
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -45,7 +45,7 @@ class LinkEnd:
             np.broadcast_to(self.position / link.min_bend_radius, (count, 3)),
             np.broadcast_to(self.frame, (count, 3, 3)),
         )
-        x, left = improved(chains, aims, starts, _STEPS)
+        x, left = stepped(chains, aims, starts, _STEPS)
         return [chains.shape(x[row, :-1]) for row in np.argsort(left, kind="stable")]
 
 

@@ -58,7 +58,7 @@ def why_impossible(task: Task) -> tuple[str, ...]:
         reasons.append(f"the link starts at P2, {at_least(task.floor - task.robot.d12)} below the floor")
     reasons += _in_the_way(task)
     longest = longest_rigid_link(task.robot)
-    positions, tolerances, targets = task.positions, task.tolerances, task.targets
+    positions, tolerances, targets = task.positions_in_base, task.tolerances, task.targets
     beyond = np.full(len(positions), -math.inf)
     far = _perhaps_out_of_reach(task, longest)
     seen = positions[far] - np.array([0.0, 0.0, task.robot.d12])
@@ -95,7 +95,7 @@ def _in_the_way(task: Task) -> list[str]:
         depth = -float(solid.distance(p2))
         if depth > _ROUNDING:
             reasons.append(f"the link starts at P2, {at_least(depth)} inside {obstacle.name}")
-        depths = rod_radius - solid.distance(task.positions)
+        depths = rod_radius - solid.distance(task.positions_in_base)
         reasons += [
             f"{task.targets[index].name} is in {obstacle.name}: "
             f"the end effector would be {at_least(depths[index])} inside"
@@ -110,7 +110,7 @@ def _perhaps_out_of_reach(task: Task, longest: float) -> NDArray[np.intp]:
     It is quickly said whether a point is in the reach, slowly how far it is from it.
     """
     reach, step = LinkReach(task.robot.link), 0.999 * longest
-    x, y, z = task.positions.T
+    x, y, z = task.positions_in_base.T
     seen, left = np.column_stack([np.hypot(x, y), 0.0 * x, z - task.robot.d12]), np.arange(len(x))
     for angle in np.linspace(0.0, 2.0 * np.pi, _DIRECTIONS, endpoint=False):
         tried = seen[left] + step * np.array([np.cos(angle), 0.0, np.sin(angle)])

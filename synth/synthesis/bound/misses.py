@@ -46,7 +46,7 @@ class MissBounds:
         self.floor = -math.inf if task.floor is None else task.floor
         self.factors = factors
         offset, radius = robot.end_effector_circle(robot.rigid_link.d35.lower, robot.rigid_link.d45.lower)
-        x, y, z = task.positions[targets].T
+        x, y, z = task.positions_in_base[targets].T
         self.circle = Circle(float(offset), float(radius), np.hypot(x, y), z)
         second = robot.joint_limits.second
         # joint 2 stands at pi where P5 is at phi = psi

@@ -131,7 +131,11 @@ def prove(
         return None
     factors = tightest / task.tolerances
     weighted = bool(np.any(factors != factors[0]))
-    size = task.robot.link.length.upper + longest_rigid_link(task.robot) + float(np.abs(task.positions).max())
+    size = (
+        task.robot.link.length.upper
+        + longest_rigid_link(task.robot)
+        + float(np.abs(task.positions_in_base).max())
+    )
     rounding = _ROUNDING * size
     wanted = gap - rounding
     enough = best_found - wanted
@@ -139,7 +143,7 @@ def prove(
         return Bound(0.0, best_found, tightest, 0, _left_out(task), weighted)
     if math.isinf(enough):  # nothing was found: then to know that it is impossible is all
         enough = 1.1 * tightest + gap
-    chosen = _hardest(task.positions, factors * misses)
+    chosen = _hardest(task.positions_in_base, factors * misses)
     bounds = MissBounds(task, chosen, factors[chosen])
     link, d12 = bounds.limits.link, task.robot.d12
     lowest = d12 - link.length.upper

@@ -29,7 +29,7 @@ _RANGES, _CLEARLY = 500, 1e-3
 
 def chosen_joints(
     task: Task, arm: Arm, given: FloatArray | None, *, keep: bool
-) -> tuple[FloatArray, NDArray[np.bool_], Room]:
+) -> tuple[FloatArray, NDArray[np.bool_], Clearances]:
     """Return the joint angles at which an arm is nearest to each target, of those where it is clear.
 
     Args:
@@ -63,7 +63,7 @@ def chosen_joints(
         clear = clear_of_everything(task, arm, candidates)
         best, each = np.argmin(np.where(clear, misses, np.inf), axis=0), np.arange(len(stuck))
         chosen[stuck], sunk[stuck] = candidates[best, each], np.isinf(misses[best, each])
-    return chosen, sunk, Room.of(task, arm, chosen)
+    return chosen, sunk, Clearances.of(task, arm, chosen)
 
 
 def _misses(task: Task, arm: Arm, candidates: FloatArray, targets: FloatArray) -> FloatArray:
@@ -88,7 +88,7 @@ def _rod_from_tube(body: ArmBody, theta2: FloatArray) -> FloatArray:
 
 
 @dataclass(frozen=True)
-class Room:
+class Clearances:
     """What the arm keeps clear of, as lower bounds of distances, m; see `ArmBody`.
 
     Attributes:
@@ -102,7 +102,7 @@ class Room:
     tube_from_itself: float
 
     @classmethod
-    def of(cls, task: Task, arm: Arm, candidates: FloatArray) -> Room:
+    def of(cls, task: Task, arm: Arm, candidates: FloatArray) -> Clearances:
         """Return the room about an arm at joint angles, shape (..., n, 2), rad."""
         body, solids, shape = ArmBody(arm), seen_by(task, arm), candidates.shape[:-1]
         joints = candidates.reshape(-1, 2)

@@ -10,7 +10,7 @@ import numpy as np
 
 from synth.robot import Arm, ArmBody
 from synth.rounding import Unit, rounded_up, told_apart
-from synth.synthesis.check.clearances import LENGTH_SLACK, Room
+from synth.synthesis.check.clearances import LENGTH_SLACK, Clearances
 from synth.task import Task, Topology
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ class Violation:
 
 
 def violations(
-    task: Task, arm: Arm, joints: FloatArray, reached: FloatArray, room: Room
+    task: Task, arm: Arm, joints: FloatArray, reached: FloatArray, room: Clearances
 ) -> tuple[Violation, ...]:
     """Return every limit that a shape breaks.
 
@@ -175,7 +175,7 @@ def _topology_violations(task: Task, arm: Arm) -> list[Violation]:
     )
 
 
-def _obstacle_violations(task: Task, room: Room) -> list[Violation]:
+def _obstacle_violations(task: Task, room: Clearances) -> list[Violation]:
     """Check that tube and rod keep clear of the obstacles at each target: one violation for each."""
     violations = []
     least = room.from_obstacles.min(axis=(-2, -1), initial=math.inf)
@@ -191,7 +191,7 @@ def _obstacle_violations(task: Task, room: Room) -> list[Violation]:
     return violations
 
 
-def _self_violations(task: Task, room: Room) -> list[Violation]:
+def _self_violations(task: Task, room: Clearances) -> list[Violation]:
     violations = _exceeds(
         "itself", -room.tube_from_itself, 0.0, LENGTH_SLACK,
         f"the malleable link would be {rounded_up(-room.tube_from_itself, digits=2)} mm inside itself "

@@ -30,7 +30,7 @@ def packed(
         overlaps: How many overlaps are among the unknowns; they start from zero.
         weights: Of the squared misses in the objective, shape (n,), 1/m^2.
     """
-    misses = arm.base.to_base(arm.forward_kinematics(joints[:, 0], joints[:, 1])) - task.positions
+    misses = arm.base.to_base(arm.forward_kinematics(joints[:, 0], joints[:, 1])) - task.positions_in_base
     offset, radius = arm.robot.end_effector_circle(arm.d35, arm.d45)
     return {
         "curvature": (arm.shape.curvatures * task.robot.link.min_bend_radius).T,

@@ -149,7 +149,7 @@ class SynthesisNlp:
         """
         weights = task.weights / task.tolerances**2 / _unit(task, start, joints)
         floor, steepest = task.floor or 0.0, 2.0 * _LARGE_MISS * _OVERLAP_UNIT * float(weights.max())
-        parameters = np.concatenate([task.positions.T.ravel(), weights, [floor, steepest]])
+        parameters = np.concatenate([task.positions_in_base.T.ravel(), weights, [floor, steepest]])
         values, status, iterations = self._ipopt.solve(
             self._x.vector_of(packed(task, start, joints, self._overlaps, weights)), parameters, watch
         )

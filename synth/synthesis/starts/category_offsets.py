@@ -11,13 +11,13 @@ from synth.task import Topology
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
-    from synth.synthesis.starts.shapes import Population
+    from synth.synthesis.starts.shapes import Shapes
     from synth.task import Task
 
 
-def category_offsets(task: Task, population: Population) -> FloatArray:
+def category_offsets(task: Task, shapes: Shapes) -> FloatArray:
     """Return how far shapes are from the category asked for, shape (..., 2 or 0), m."""
-    frame, position = population.end
+    frame, position = shapes.end
     match task.topology:
         case Topology.SCARA:
             return np.asarray(ARM_LENGTH * frame[..., :2, 0])
@@ -28,9 +28,9 @@ def category_offsets(task: Task, population: Population) -> FloatArray:
             return np.zeros((*position.shape[:-1], 0))
 
 
-def category_slopes(task: Task, population: Population) -> FloatArray:
+def category_slopes(task: Task, shapes: Shapes) -> FloatArray:
     """Return the derivatives of `category_offsets` by the motion of the link's end, shape (N, 2 or 0, 6)."""
-    frame, position = population.end
+    frame, position = shapes.end
     match task.topology:
         case Topology.SCARA:
             # Where the end turns by w, u changes by w x u.

@@ -8,10 +8,10 @@ import numpy as np
 
 from synth.synthesis.starts.category_offsets import category_offsets, category_slopes
 from synth.synthesis.starts.overlaps import overlaps
-from synth.synthesis.starts.postures import Aims, Postures
+from synth.synthesis.starts.postures import Postures, TargetsSeen
 from synth.synthesis.starts.refined import Refined, relative_weights
 from synth.synthesis.starts.residuals import Residuals
-from synth.synthesis.starts.shapes import Population, free_directions, into_limits
+from synth.synthesis.starts.shapes import Shapes, free_directions, into_limits
 from synth.task import Objective
 
 if TYPE_CHECKING:
@@ -45,8 +45,8 @@ class Descent:
     def __init__(
         self,
         task: Task,
-        aims: Aims,
-        population: Population,
+        aims: TargetsSeen,
+        shapes: Shapes,
         postures: Postures,
         is_up: Callable[[], bool],
         *,
@@ -54,10 +54,10 @@ class Descent:
     ) -> None:
         self._is_up = is_up
         self._task, self._aims, self._weights, self._clear = task, aims, relative_weights(task), clear
-        self._population, self._postures = population, postures
-        self._damping = np.full(len(population.length), _FIRST_DAMPING)
+        self._shapes, self._postures = shapes, postures
+        self._damping = np.full(len(shapes.length), _FIRST_DAMPING)
         self._exponent = _SQUARES
-        self._cost = self._cost_of(population, postures)
+        self._cost = self._cost_of(shapes, postures)
 
     def after(self, iterations: int, *, keep_branches: bool, near: bool) -> Refined:
         """Return the shapes after so many steps."""
@@ -68,18 +68,16 @@ class Descent:
                 break
             last = iteration == iterations - 1
             if not (keep_branches or last) and (iteration + 1) % _STEPS_ON_BRANCHES == 0:
-                nearest = Postures.nearest(self._aims, self._population.kinematics)
+                nearest = Postures.nearest(self._aims, self._shapes.kinematics)
                 self._postures = nearest.where(nearest.squared < self._postures.squared, self._postures)
-                self._cost = self._cost_of(self._population, self._postures)
-        return Refined(self._population, self._postures.joints, self._cost)
+                self._cost = self._cost_of(self._shapes, self._postures)
+        return Refined(self._shapes, self._postures.joints, self._cost)
 
     def cleared(self) -> Refined:
         """Return the shapes after steps out of obstacles, with the costs of their misses."""
         self.after(_CLEARING, keep_branches=True, near=True)
         self._clear = False
-        return Refined(
-            self._population, self._postures.joints, self._cost_of(self._population, self._postures)
-        )
+        return Refined(self._shapes, self._postures.joints, self._cost_of(self._shapes, self._postures))
 
     def level(self, exponents: Sequence[float]) -> Refined:
         """Return the shapes after steps in ever sharper norms."""
@@ -90,7 +88,7 @@ class Descent:
                 if self._is_up():
                     break
                 self._step()
-        return Refined(self._population, self._postures.joints, self._cost)
+        return Refined(self._shapes, self._postures.joints, self._cost)
 
     def _exponent_at(self, share: float, *, near: bool) -> float:
         exponents = _EXPONENTS[self._task.objective]
@@ -100,7 +98,7 @@ class Descent:
     def _measure_by(self, exponent: float) -> None:
         if exponent != self._exponent:
             self._exponent = exponent
-            self._cost = self._cost_of(self._population, self._postures)
+            self._cost = self._cost_of(self._shapes, self._postures)
 
     def _shares(self, postures: Postures) -> tuple[FloatArray, FloatArray]:
         """Return the squared p-norm of the misses, (N,), and its derivatives by the squared misses, (N, n).
@@ -120,35 +118,35 @@ class Descent:
         slopes = (mean ** (1.0 / half - 1.0))[:, None] * relative ** (half - 1.0) * self._weights
         return worst * mean ** (1.0 / half), slopes
 
-    def _cost_of(self, population: Population, postures: Postures) -> FloatArray:
-        off = category_offsets(self._task, population)
+    def _cost_of(self, shapes: Shapes, postures: Postures) -> FloatArray:
+        off = category_offsets(self._task, shapes)
         cost = self._shares(postures)[0] + np.einsum("ni,ni->n", off, off)
         if self._clear:
-            depth = overlaps(self._task, population, postures.joints, margin=_MARGIN, is_up=self._is_up)
+            depth = overlaps(self._task, shapes, postures.joints, margin=_MARGIN, is_up=self._is_up)
             cost += np.mean(depth**2, axis=-1)
         return np.asarray(cost)
 
     def _step(self) -> None:
         """Move each shape by a damped step if that makes it better."""
-        residuals = Residuals(self._population, self._postures, self._aims.limits.second)
+        residuals = Residuals(self._shapes, self._postures, self._aims.limits.second)
         cost, shares = self._shares(self._postures)
         curvature, slope = residuals.normal_equations(shares)
         if self._exponent != _SQUARES:
             curvature = _curvature_of_norm(self._exponent, cost, curvature, slope)
-        by_end = category_slopes(self._task, self._population)
+        by_end = category_slopes(self._task, self._shapes)
         curvature[:, :6, :6] += by_end.transpose(0, 2, 1) @ by_end
-        off = category_offsets(self._task, self._population)
+        off = category_offsets(self._task, self._shapes)
         slope[:, :6] += np.einsum("nki,nk->ni", by_end, off)
 
-        robot, motion = self._population.robot, self._population.motion
+        robot, motion = self._shapes.robot, self._shapes.motion
         by_unknowns = motion.transpose(0, 2, 1)
         by_unknown, curvature = (by_unknowns @ slope[..., None])[..., 0], by_unknowns @ curvature @ motion
         if self._clear:
             depth, deeper = self._depths(residuals)
             by_unknown += np.einsum("ntk,nt->nk", deeper, depth) / depth.shape[1]
             curvature += deeper.transpose(0, 2, 1) @ deeper / depth.shape[1]
-        step = _damped_step(self._population, curvature, by_unknown, self._damping)
-        moved = Population(robot, into_limits(robot, self._population.unknowns + step))
+        step = _damped_step(self._shapes, curvature, by_unknown, self._damping)
+        moved = Shapes(robot, into_limits(robot, self._shapes.unknowns + step))
         second = self._aims.limits.second
         # By how much joint 2 follows is only known to first order; joint 1 is at its best in any case.
         theta2 = self._postures.theta2 + residuals.following((motion @ step[..., None])[..., 0])
@@ -157,7 +155,7 @@ class Descent:
         if self._clear and self._is_up():
             return  # not all obstacles were looked at
         better = cost < self._cost
-        self._population = moved.where(better, self._population)
+        self._shapes = moved.where(better, self._shapes)
         self._postures = postures.where(better[:, None], self._postures)
         self._cost = np.where(better, cost, self._cost)
         self._damping = np.clip(
@@ -166,7 +164,7 @@ class Descent:
 
     def _depths(self, residuals: Residuals) -> tuple[FloatArray, FloatArray]:
         """Return the depths in obstacles, shape (N, n), m, and by differences how unknowns change them."""
-        here, motion, second = self._population, self._population.motion, self._aims.limits.second
+        here, motion, second = self._shapes, self._shapes.motion, self._aims.limits.second
         depth = overlaps(self._task, here, self._postures.joints, margin=_MARGIN, is_up=self._is_up)
         deeper = np.zeros((*depth.shape, here.unknowns.shape[1]))
         if not depth.any():
@@ -177,11 +175,11 @@ class Descent:
                 break
             moved = here.unknowns[deep]
             moved[:, unknown] += _DIFFERENCE
-            population = Population(here.robot, moved)
+            shapes = Shapes(here.robot, moved)
             theta2 = self._postures.theta2 + residuals.following(_DIFFERENCE * motion[..., unknown])
             theta2 = np.clip(theta2[deep], second.lower, second.upper)
-            joints = Postures.at(self._aims, population.kinematics, theta2).joints
-            changed = overlaps(self._task, population, joints, margin=_MARGIN, is_up=self._is_up)
+            joints = Postures.at(self._aims, shapes.kinematics, theta2).joints
+            changed = overlaps(self._task, shapes, joints, margin=_MARGIN, is_up=self._is_up)
             deeper[deep, :, unknown] = (changed - depth[deep]) / _DIFFERENCE
         return depth, deeper
 
@@ -199,11 +197,9 @@ def _curvature_of_norm(
     return (exponent - 1.0) * curvature - (exponent - 2.0) * along[:, :, None] * along[:, None, :]
 
 
-def _damped_step(
-    population: Population, curvature: FloatArray, slope: FloatArray, damping: FloatArray
-) -> FloatArray:
+def _damped_step(shapes: Shapes, curvature: FloatArray, slope: FloatArray, damping: FloatArray) -> FloatArray:
     """Return the Gauss-Newton steps of the unknowns that their limits allow, shape (N, unknowns)."""
-    free, unit = free_directions(population, slope), np.eye(slope.shape[1])
+    free, unit = free_directions(shapes, slope), np.eye(slope.shape[1])
     diagonal = np.einsum("npp->np", curvature)
     # The floor of the scale keeps unknowns that nothing depends on from running away.
     scale = diagonal + 1e-3 * diagonal.max(axis=1, keepdims=True) + 1e-12

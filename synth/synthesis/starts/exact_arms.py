@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.geometry import designs_through_five, designs_through_four, is_generic
+from synth.geometry import arms_through_five, arms_through_four, is_generic
 from synth.synthesis.starts.shapes import ARM_LENGTH
 
 if TYPE_CHECKING:
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.geometry import Invariants
-    from synth.synthesis.starts.shapes import Population
+    from synth.synthesis.starts.shapes import Shapes
     from synth.task import Task
 
 
-def exact_designs(task: Task) -> tuple[Invariants, ...] | None:
+def exact_arms(task: Task) -> tuple[Invariants, ...] | None:
     """Return all arms whose workspace passes exactly through the targets, whatever the link can do.
 
     Args:
@@ -31,27 +31,27 @@ def exact_designs(task: Task) -> tuple[Invariants, ...] | None:
         The designs, none if there is no real one; None where the question has no finite answer: it takes
         four targets with the rigid link given, or five with a free one, in general position.
     """
-    positions, rigid = task.positions, task.robot.rigid_link
+    positions, rigid = task.positions_in_base, task.robot.rigid_link
     if len(positions) != (4 if rigid.is_fixed else 5) or not is_generic(positions):
         return None
     if not rigid.is_fixed:
-        return designs_through_five(positions).of()
+        return arms_through_five(positions).of()
     _, radius = task.robot.end_effector_circle(rigid.d35.lower, rigid.d45.lower)
-    return designs_through_four(positions, radius).of() if radius > 0.0 else None
+    return arms_through_four(positions, radius).of() if radius > 0.0 else None
 
 
-def nearest_to_designs(population: Population, designs: Sequence[Invariants], count: int) -> NDArray[np.intp]:
+def nearest_to_exact_arms(shapes: Shapes, designs: Sequence[Invariants], count: int) -> NDArray[np.intp]:
     """Return which shapes are nearest to exact designs, `count` for each way in which a design may lie.
 
     A design leaves open how it is turned about axis 1, which of two mirror images it is, and which way
     axis 2 points.
 
     Args:
-        population: The shapes, of shape (N,).
+        shapes: The shapes, of shape (N,).
         designs: The designs.
         count: How many shapes for each.
     """
-    kinematics = population.kinematics
+    kinematics = shapes.kinematics
     poses = _pose_about_axis_1(kinematics.centre, kinematics.frame[..., 0])
     nearest = []
     for design, sense in product(designs, (1.0, -1.0)):

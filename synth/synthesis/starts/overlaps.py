@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.geometry import Solid
-    from synth.synthesis.starts.shapes import Population
+    from synth.synthesis.starts.shapes import Shapes
     from synth.task import Task
 
 # The least distance along a rod is looked for at so many samples, which are drawn closer so often.
@@ -23,7 +23,7 @@ _ROD_SAMPLES, _ROD_ZOOMS = 8, 3
 
 def overlaps(
     task: Task,
-    population: Population,
+    shapes: Shapes,
     joints: FloatArray,
     *,
     margin: float = 0.0,
@@ -33,7 +33,7 @@ def overlaps(
 
     Args:
         task: The task with its obstacles.
-        population: The shapes, of shape (N,).
+        shapes: The shapes, of shape (N,).
         joints: Joint angles for each target, shape (N, n, 2), rad.
         margin: What they are to keep from each other, m.
         is_up: Asked after each obstacle whether to leave out the others.
@@ -41,11 +41,11 @@ def overlaps(
     Returns:
         The largest depth of each shape at each target, shape (N, n), m; 0 where it is clear.
     """
-    robot, tube = task.robot, population.centreline
+    robot, tube = task.robot, shapes.centreline
     radii = 0.5 * robot.link.diameter, 0.5 * robot.rigid_link.diameter
     end = tube[:, None, -1]
-    rod = population.kinematics.each_target().forward(0.0, joints[..., 1]) - end
-    depth = np.maximum(*_self_overlaps(population, end, rod, margin))
+    rod = shapes.kinematics.each_target().forward(0.0, joints[..., 1]) - end
+    depth = np.maximum(*_self_overlaps(shapes, end, rod, margin))
     if not task.solids:
         return depth
     theta1 = joints[..., 0, None]
@@ -55,7 +55,7 @@ def overlaps(
     ends = turned(np.stack(np.broadcast_arrays(end, end + rod), axis=-2), theta1)
     # What no link reaches is in the way of none.
     reach = (
-        float(population.length.max(initial=0.0))
+        float(shapes.length.max(initial=0.0))
         + float(np.linalg.norm(rod, axis=-1).max(initial=0.0))
         + max(radii)
         + margin
@@ -85,21 +85,21 @@ def _least_along(solid: Solid, start: FloatArray, end: FloatArray) -> FloatArray
 
 
 def _self_overlaps(
-    population: Population, end: FloatArray, rod: FloatArray, margin: float
+    shapes: Shapes, end: FloatArray, rod: FloatArray, margin: float
 ) -> tuple[FloatArray, FloatArray]:
     """Return how deep the tube is inside itself, shape (N, 1), and the rod in the tube, shape (N, n), m.
 
     Args:
-        population: The shapes, of shape (N,).
+        shapes: The shapes, of shape (N,).
         end: Ends of their links, shape (N, 1, 3), m.
         rod: From there to P5 at each target, shape (N, n, 3), m.
         margin: What they are to keep from each other, m.
     """
-    robot, nodes = population.robot, population.centreline
+    robot, nodes = shapes.robot, shapes.centreline
     # Between the ends of the pieces, the middles of their chords serve, too.
     tube = np.concatenate([nodes, 0.5 * (nodes[:, 1:] + nodes[:, :-1])], axis=1)
     share = np.arange(1.0, nodes.shape[1] + 1.0) / nodes.shape[1]
-    along = np.concatenate([share, 0.5 * (share[1:] + share[:-1])]) * population.length[:, None]
+    along = np.concatenate([share, 0.5 * (share[1:] + share[:-1])]) * shapes.length[:, None]
     thickness = robot.link.diameter
     # What is nearer along the tube is its neighbourhood, or the joint (see `ArmBody`).
     apart = np.linalg.norm(tube[:, :, None] - tube[:, None], axis=-1)
@@ -110,7 +110,7 @@ def _self_overlaps(
     from_end = tube - end
     reached = np.clip(from_end @ np.swapaxes(direction, 1, 2), thickness, np.swapaxes(length, 1, 2))
     off = from_end[:, :, None] - reached[..., None] * direction[:, None]
-    joint = along > population.length[:, None] - thickness
+    joint = along > shapes.length[:, None] - thickness
     apart = np.where(joint[..., None], np.inf, np.linalg.norm(off, axis=-1))
     of_rod = 0.5 * (thickness + robot.rigid_link.diameter) + margin - apart.min(axis=1)
     return np.maximum(of_tube, 0.0)[:, None], np.maximum(of_rod, 0.0)

@@ -31,7 +31,7 @@ _NEAR_AXIS = 0.02
 
 
 @dataclass(frozen=True, eq=False)
-class Aims:
+class TargetsSeen:
     """Targets as joint 1 sees them, and the limits of the joints.
 
     Attributes:
@@ -79,7 +79,7 @@ class Postures:
     turns: NDArray[np.bool_]
 
     @classmethod
-    def at(cls, aims: Aims, kinematics: Kinematics, theta2: FloatArray) -> Postures:
+    def at(cls, aims: TargetsSeen, kinematics: Kinematics, theta2: FloatArray) -> Postures:
         """Return the postures at angles of joint 2, shape (N, n), rad.
 
         Args:
@@ -110,7 +110,7 @@ class Postures:
         return cls(theta2, theta1, beyond, outward, point, miss, tangent, turns)
 
     @classmethod
-    def nearest(cls, aims: Aims, kinematics: Kinematics) -> Postures:
+    def nearest(cls, aims: TargetsSeen, kinematics: Kinematics) -> Postures:
         """Return the postures nearest to the targets within the limits of the joints.
 
         Off the workspace the branches of the inverse kinematics are near its closest points; a few steps
@@ -126,7 +126,7 @@ class Postures:
         return both[0].where(both[0].squared <= both[1].squared, both[1])
 
     @classmethod
-    def led_from(cls, aims: Aims, kinematics: Kinematics, theta2: FloatArray) -> Postures:
+    def led_from(cls, aims: TargetsSeen, kinematics: Kinematics, theta2: FloatArray) -> Postures:
         """Return postures after a few Gauss-Newton steps of joint 2 from angles, joint 1 always at its best.
 
         Args:

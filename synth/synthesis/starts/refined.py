@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.starts.shapes import Population
+from synth.synthesis.starts.shapes import Shapes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,13 +21,13 @@ class Refined:
     """Shapes at the bottoms of their valleys, or nearly.
 
     Attributes:
-        population: The shapes, of shape (N,).
+        shapes: The shapes, of shape (N,).
         joints: Their joint angles for each target, shape (N, n, 2), rad.
         cost: Their mean squared misses, weighted with `relative_weights`, shape (N,), m^2; where the worst
             miss counts, nearly that one squared, and not above it where the valley ends.
     """
 
-    population: Population
+    shapes: Shapes
     joints: FloatArray
     cost: FloatArray
 
@@ -36,11 +36,11 @@ class Refined:
         """Return the shapes of all parts, in order."""
         joints = np.concatenate([part.joints for part in parts])
         cost = np.concatenate([part.cost for part in parts])
-        return cls(Population.joined([part.population for part in parts]), joints, cost)
+        return cls(Shapes.joined([part.shapes for part in parts]), joints, cost)
 
     def take(self, chosen: NDArray[np.intp]) -> Refined:
         """Return some of the shapes."""
-        return Refined(self.population.take(chosen), self.joints[chosen], self.cost[chosen])
+        return Refined(self.shapes.take(chosen), self.joints[chosen], self.cost[chosen])
 
     def best(self, count: int) -> Refined:
         """Return the best shapes in order, `count` at most."""

@@ -10,7 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from synth.synthesis.starts.descent import Descent
-from synth.synthesis.starts.postures import Aims, Postures
+from synth.synthesis.starts.postures import Postures, TargetsSeen
 from synth.synthesis.starts.refined import Refined
 from synth.task import Objective
 from synth.watch import never
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from synth.arrays import FloatArray
-    from synth.synthesis.starts.shapes import Population
+    from synth.synthesis.starts.shapes import Shapes
     from synth.task import Task
 
 _ITERATIONS = {Objective.LEAST_SQUARES: 20, Objective.MINIMAX: 24}
@@ -32,7 +32,7 @@ _TOGETHER = 4000  # postures, so that the arrays stay in the cache
 
 def refine(
     task: Task,
-    population: Population,
+    shapes: Shapes,
     theta2: FloatArray | None = None,
     iterations: int | None = None,
     *,
@@ -46,7 +46,7 @@ def refine(
 
     Args:
         task: The task.
-        population: The starts, of shape (N,).
+        shapes: The starts, of shape (N,).
         theta2: Angle of joint 2 at which each start shall meet each target, shape (N, n), rad, and stay on
             that branch; by default the nearest one, which is looked for again from time to time.
         iterations: Number of steps; by default enough to arrive, mostly.
@@ -59,7 +59,7 @@ def refine(
     iterations = iterations or _ITERATIONS[task.objective]
     return _descents(
         task,
-        population,
+        shapes,
         theta2,
         lambda descent: descent.after(iterations, keep_branches=theta2 is not None, near=near),
         is_up,
@@ -68,7 +68,7 @@ def refine(
 
 def _descents(
     task: Task,
-    population: Population,
+    shapes: Shapes,
     theta2: FloatArray | None,
     led: Callable[[Descent], Refined],
     is_up: Callable[[], bool],
@@ -76,12 +76,12 @@ def _descents(
     clear: bool = False,
 ) -> Refined:
     """Return shapes after their descents, led a part of them at a time."""
-    aims = Aims(task.positions, task.robot.joint_limits)
-    together = max(1, _TOGETHER // len(task.positions))
+    aims = TargetsSeen(task.positions_in_base, task.robot.joint_limits)
+    together = max(1, _TOGETHER // len(task.positions_in_base))
     parts = []
-    for first in range(0, len(population.length), together):
+    for first in range(0, len(shapes.length), together):
         some = slice(first, first + together)
-        part = population.take(some)
+        part = shapes.take(some)
         if theta2 is None:
             postures = Postures.nearest(aims, part.kinematics)
         else:
@@ -106,7 +106,7 @@ def level(task: Task, refined: Refined, is_up: Callable[[], bool] = never) -> Re
     """
     for exponents in _LEVELLING:
         led = partial(Descent.level, exponents=exponents)
-        refined = _descents(task, refined.population, refined.joints[..., 1], led, is_up).best(_LEVELLED)
+        refined = _descents(task, refined.shapes, refined.joints[..., 1], led, is_up).best(_LEVELLED)
     return refined
 
 
@@ -121,4 +121,4 @@ def cleared(task: Task, refined: Refined, is_up: Callable[[], bool] = never) -> 
     Returns:
         The shapes; their costs count the misses alone.
     """
-    return _descents(task, refined.population, refined.joints[..., 1], Descent.cleared, is_up, clear=True)
+    return _descents(task, refined.shapes, refined.joints[..., 1], Descent.cleared, is_up, clear=True)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.robot import Interval
     from synth.synthesis.starts.postures import Postures
-    from synth.synthesis.starts.shapes import Population
+    from synth.synthesis.starts.shapes import Shapes
 
 _FARTHEST_STEP = 0.5  # of joint 2, rad
 _AT_LIMIT = 1e-9  # rad
@@ -34,18 +34,18 @@ class Residuals:
     half-plane's curve, is always left; where a joint is held by its limit another one is.
 
     Args:
-        population: N shapes.
+        shapes: N shapes.
         postures: Their postures at n targets.
         limits: Limits of joint 2.
     """
 
-    def __init__(self, population: Population, postures: Postures, limits: Interval) -> None:
+    def __init__(self, shapes: Shapes, postures: Postures, limits: Interval) -> None:
         self._postures = postures
-        frame, position = population.end
+        frame, position = shapes.end
         self._lever = postures.point - position.T[..., None]
         self._circle = None
-        if not population.robot.rigid_link.is_fixed:
-            kinematics = population.kinematics
+        if not shapes.robot.rigid_link.is_fixed:
+            kinematics = shapes.kinematics
             from_centre = postures.point - kinematics.centre.T[..., None]
             from_centre = from_centre / np.maximum(kinematics.radius, _TINY)[:, None]
             self._circle = np.broadcast_to(frame[..., 0].T[..., None], from_centre.shape), from_centre

@@ -9,7 +9,7 @@ import numpy as np
 
 from synth.synthesis.starts.category_offsets import category_offsets
 from synth.synthesis.starts.refined import relative_weights
-from synth.synthesis.starts.shapes import Population
+from synth.synthesis.starts.shapes import Shapes
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
@@ -22,16 +22,16 @@ _FAR = 0.3
 
 
 @lru_cache(maxsize=4)
-def shapes_at_random(robot: Robot, floor: float | None, seed: int) -> Population:
+def shapes_at_random(robot: Robot, floor: float | None, seed: int) -> Shapes:
     """Return random shapes whose links end above the floor, the same for all tasks of a seed.
 
     They keep where they end, which takes a few megabytes; the next task need not ask again.
     """
-    population = Population.sample(robot, _SHAPES, np.random.default_rng([seed, 0]))
-    return population if floor is None else population.take(population.end[1][:, 2] > floor)
+    shapes = Shapes.sample(robot, _SHAPES, np.random.default_rng([seed, 0]))
+    return shapes if floor is None else shapes.take(shapes.end[1][:, 2] > floor)
 
 
-def estimated_misses(task: Task, population: Population) -> FloatArray:
+def estimated_misses(task: Task, shapes: Shapes) -> FloatArray:
     """Return about how far the workspace of each shape passes by each target; no joint limits.
 
     In the plane of height z and squared distance N = |P5|^2 a workspace is an ellipse,
@@ -41,20 +41,20 @@ def estimated_misses(task: Task, population: Population) -> FloatArray:
 
     Args:
         task: The task.
-        population: The shapes.
+        shapes: The shapes.
 
     Returns:
         Estimated misses, shape (n, N), m.
     """
-    centre, radius = population.kinematics.centre, population.kinematics.radius
-    _, v, t = np.moveaxis(population.end[0], -1, 0)
+    centre, radius = shapes.kinematics.centre, shapes.kinematics.radius
+    _, v, t = np.moveaxis(shapes.end[0], -1, 0)
     m00, m01 = -radius * t[:, 2], radius * v[:, 2]
     m10 = -2.0 * radius * np.einsum("ij,ij->i", centre, t)
     m11 = 2.0 * radius * np.einsum("ij,ij->i", centre, v)
     determinant = np.abs(m00 * m11 - m01 * m10)
     squared = np.einsum("ij,ij->i", centre, centre) + radius**2
     misses = np.empty((len(task.targets), len(radius)))
-    for row, (x, y, z) in enumerate(task.positions):
+    for row, (x, y, z) in enumerate(task.positions_in_base):
         height = z - centre[:, 2]
         beyond = x * x + y * y + z * z - squared
         a = m11 * height - m01 * beyond
@@ -67,7 +67,7 @@ def estimated_misses(task: Task, population: Population) -> FloatArray:
     return misses
 
 
-def screened(task: Task, population: Population) -> FloatArray:
+def screened(task: Task, shapes: Shapes) -> FloatArray:
     """Return what shapes cost at first sight, shape (N,), m^2.
 
     The mean squared misses, estimated and weighted, and the squared distance from the category that the task
@@ -75,8 +75,8 @@ def screened(task: Task, population: Population) -> FloatArray:
 
     Args:
         task: The task.
-        population: The shapes, of shape (N,).
+        shapes: The shapes, of shape (N,).
     """
-    misses = np.minimum(estimated_misses(task, population), _FAR)
-    offsets = category_offsets(task, population)
+    misses = np.minimum(estimated_misses(task, shapes), _FAR)
+    offsets = category_offsets(task, shapes)
     return np.asarray(relative_weights(task) @ misses**2 + np.sum(offsets**2, axis=-1))

@@ -30,7 +30,7 @@ CURVATURES, LENGTH, _D35, _D45 = slice(0, 2 * ARCS), 2 * ARCS, 2 * ARCS + 1, 2 *
 
 
 @dataclass(frozen=True, eq=False)
-class Population:
+class Shapes:
     """Shapes of a robot, each a row of unknowns; leading axes "..." are free.
 
     Attributes:
@@ -47,7 +47,7 @@ class Population:
         object.__setattr__(self, "unknowns", frozen(self.unknowns))
 
     @classmethod
-    def sample(cls, robot: Robot, size: int, rng: np.random.Generator) -> Population:
+    def sample(cls, robot: Robot, size: int, rng: np.random.Generator) -> Shapes:
         """Draw shapes within the limits: curvatures uniform in their disc, lengths in their intervals.
 
         Args:
@@ -63,7 +63,7 @@ class Population:
         return cls(robot, into_limits(robot, unknowns))
 
     @classmethod
-    def of(cls, arm: Arm) -> Population:
+    def of(cls, arm: Arm) -> Shapes:
         """Return the one shape of an arm, which is of ARCS equal arcs."""
         curvatures = (arm.shape.curvatures * arm.robot.link.min_bend_radius).ravel()
         rigid = [] if arm.robot.rigid_link.is_fixed else [arm.d35, arm.d45]
@@ -139,16 +139,16 @@ class Population:
         offset, radius = self.robot.end_effector_circle(*self.rigid_links)
         return Kinematics(frame, position + offset[..., None] * frame[..., 0], radius)
 
-    def take(self, chosen: NDArray[np.intp] | NDArray[np.bool_] | slice) -> Population:
+    def take(self, chosen: NDArray[np.intp] | NDArray[np.bool_] | slice) -> Shapes:
         """Return some of the shapes."""
-        return Population(self.robot, self.unknowns[chosen])
+        return Shapes(self.robot, self.unknowns[chosen])
 
     @classmethod
-    def joined(cls, parts: Sequence[Population]) -> Population:
+    def joined(cls, parts: Sequence[Shapes]) -> Shapes:
         """Return the shapes of all parts, of one robot at least, in order."""
         return cls(parts[0].robot, np.concatenate([part.unknowns for part in parts]))
 
-    def varied(self, sizes: Sequence[float], lengths: float, rng: np.random.Generator) -> Population:
+    def varied(self, sizes: Sequence[float], lengths: float, rng: np.random.Generator) -> Shapes:
         """Return the shapes bent at random by a little or more, within the limits.
 
         Args:
@@ -159,11 +159,11 @@ class Population:
         size = rng.choice(sizes, (len(self.unknowns), 1)) * np.ones(self.unknowns.shape)
         size[:, LENGTH:] *= lengths
         moved = self.unknowns + size * rng.normal(size=self.unknowns.shape)
-        return Population(self.robot, into_limits(self.robot, moved))
+        return Shapes(self.robot, into_limits(self.robot, moved))
 
-    def where(self, mine: NDArray[np.bool_], other: Population) -> Population:
+    def where(self, mine: NDArray[np.bool_], other: Shapes) -> Shapes:
         """Return these shapes where a mask, shape (N,), says so, and others elsewhere."""
-        return Population(self.robot, np.where(mine[:, None], self.unknowns, other.unknowns))
+        return Shapes(self.robot, np.where(mine[:, None], self.unknowns, other.unknowns))
 
     def arm(self, index: int, base: BasePose) -> Arm:
         """Return one shape as a robot that stands at `base`."""
@@ -186,7 +186,7 @@ def into_limits(robot: Robot, unknowns: FloatArray) -> FloatArray:
 
     Args:
         robot: The hardware.
-        unknowns: As in `Population`, shape (..., 9) or (..., 11).
+        unknowns: As in `Shapes`, shape (..., 9) or (..., 11).
     """
     unknowns = np.array(unknowns)
     link, rigid = robot.link, robot.rigid_link
@@ -206,16 +206,16 @@ def into_limits(robot: Robot, unknowns: FloatArray) -> FloatArray:
     return unknowns
 
 
-def free_directions(population: Population, slope: FloatArray) -> FloatArray:
+def free_directions(shapes: Shapes, slope: FloatArray) -> FloatArray:
     """Return projections onto the directions in which shapes may move, shape (N, unknowns, unknowns).
 
     A limit that is reached, and beyond which a slope leads, takes away its normal.
 
     Args:
-        population: Shapes within their limits, of shape (N,).
+        shapes: Shapes within their limits, of shape (N,).
         slope: Slopes of what is to become less, shape (N, unknowns).
     """
-    robot, x, count = population.robot, population.unknowns, len(slope)
+    robot, x, count = shapes.robot, shapes.unknowns, len(slope)
     free = np.tile(np.eye(x.shape[1]), (count, 1, 1))
     curvatures = x[:, CURVATURES].reshape(count, ARCS, 2)
     bends = np.linalg.norm(curvatures, axis=-1)
@@ -233,13 +233,13 @@ def free_directions(population: Population, slope: FloatArray) -> FloatArray:
         free[:, unknown, unknown] -= (shorter & shortest) | (longer & longest)
     total = bends.sum(axis=1)
     normal = np.zeros(x.shape)
-    normal[:, CURVATURES] = (bent * population.length[:, None, None]).reshape(count, -1)
+    normal[:, CURVATURES] = (bent * shapes.length[:, None, None]).reshape(count, -1)
     normal[:, LENGTH] = total
     normal = (free @ normal[..., None])[..., 0]
     squared = np.einsum("ni,ni->n", normal, normal)
     most = robot.link.max_total_bend * ARCS / robot.link.max_curvature
     more = np.einsum("ni,ni->n", slope, normal) < 0.0
-    held = more & (total * population.length >= most - _AT_LIMIT) & (squared > _AT_LIMIT)
+    held = more & (total * shapes.length >= most - _AT_LIMIT) & (squared > _AT_LIMIT)
     free -= (held / np.maximum(squared, _TINY))[:, None, None] * normal[:, :, None] * normal[:, None, :]
     return free
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.starts.exact_arms import exact_designs, nearest_to_designs
+from synth.synthesis.starts.exact_arms import exact_arms, nearest_to_exact_arms
 from synth.synthesis.starts.refined import relative_weights
 from synth.synthesis.starts.screening import screened, shapes_at_random
 from synth.synthesis.starts.shapes import ARM_LENGTH
@@ -68,7 +68,9 @@ class Start:
     cost: float = 0.0
 
 
-def starts(task: Task, seed: int, *, quick: bool = False, watch: Watch | None = None) -> Iterator[Start]:
+def start_points(
+    task: Task, seed: int, *, quick: bool = False, watch: Watch | None = None
+) -> Iterator[Start]:
     """Yield distinct start points, the most promising first.
 
     Args:
@@ -103,8 +105,8 @@ def _starts(task: Task, seed: int, rng: np.random.Generator, watch: Watch, *, qu
         return rng.choice(order[:most], min(count, most, len(order)), replace=False)
 
     first = np.union1d(order[: _REFINED // 2], drawn(_REFINED // 2, _GOOD))
-    if designs := exact_designs(task):
-        first = np.union1d(first, nearest_to_designs(shapes, designs, _PER_DESIGN))
+    if designs := exact_arms(task):
+        first = np.union1d(first, nearest_to_exact_arms(shapes, designs, _PER_DESIGN))
     valleys, distinct = Valleys.of(task, shapes.take(first), watch), _Distinct(task)
     if not (quick or valleys.agreed):
         yield from distinct.of(valleys.within_tolerance)
@@ -126,14 +128,14 @@ class _Distinct:
 
     def of(self, refined: Refined) -> Iterator[Start]:
         """Yield starts in the order of their costs, m^2, except those that are nearly one yielded before."""
-        population, base, yielded = refined.population, self._task.base, 0
-        frame, position = population.end
+        shapes, base, yielded = refined.shapes, self._task.base, 0
+        frame, position = shapes.end
         poses = np.hstack([position, ARM_LENGTH * frame[:, :, 0]])
         as_good = min(_SETTLED, _SETTLED_PART * float(self._task.tolerances.min())) ** 2
         cost = np.maximum(refined.cost, as_good)
         # Shapes that miss alike are mostly one surface, bent in several ways.
         kinds = np.round(np.log(cost) / _ALIKE)
-        for index in np.lexsort([population.bending, cost]):
+        for index in np.lexsort([shapes.bending, cost]):
             kind, settled = float(kinds[index]), cost[index] <= as_good
             near = np.linalg.norm(self._poses - poses[index], axis=1) < _DISTINCT
             no_better = cost[index] >= (1.0 - _BETTER) * self._costs
@@ -144,7 +146,7 @@ class _Distinct:
             self._kinds[kind] += 1
             self._poses = np.vstack([self._poses, poses[index]])
             self._costs = np.append(self._costs, cost[index])
-            yield Start(population.arm(index, base), refined.joints[index], float(refined.cost[index]))
+            yield Start(shapes.arm(index, base), refined.joints[index], float(refined.cost[index]))
             yielded += 1
             if yielded == _MOST_STARTS[self._task.objective]:
                 return

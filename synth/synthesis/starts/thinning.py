@@ -33,7 +33,7 @@ def thinned(task: Task, count: int, rng: np.random.Generator) -> Task:
     if len(task.targets) > _LOOKED_AT:  # of a million, as many as tell where their ends are
         some = np.sort(rng.choice(len(task.targets), _LOOKED_AT, replace=False))
         task = replace(task, targets=task.table.take(some))
-    spread = _spread(task.positions, count // 2, int(rng.integers(len(task.targets))))
+    spread = _spread(task.positions_in_base, count // 2, int(rng.integers(len(task.targets))))
     others = np.setdiff1d(np.arange(len(task.targets)), spread)
     chosen = np.union1d(spread, rng.choice(others, count - len(spread), replace=False))
     return replace(task, targets=task.table.take(chosen))

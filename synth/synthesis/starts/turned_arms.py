@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.robot import Interval, link_to_pose
-from synth.synthesis.starts.postures import Aims, Postures
+from synth.synthesis.starts.postures import Postures, TargetsSeen
 from synth.synthesis.starts.refinement import refine
-from synth.synthesis.starts.shapes import Population, in_equal_arcs
+from synth.synthesis.starts.shapes import Shapes, in_equal_arcs
 from synth.task import Objective
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 SAMPLE, _STEPS, _STEPS_WITH_ALL = 2000, 8, 2
 
 
-def improved(task: Task, arm: Arm, watch: Watch) -> Arm:
+def refined_for_all(task: Task, arm: Arm, watch: Watch) -> Arm:
     """Return an arm after Gauss-Newton steps on all targets, for the sum of their squared misses.
 
     The steps know the limits of the link and of the joints, but neither floor nor obstacles.
@@ -49,8 +49,8 @@ def improved(task: Task, arm: Arm, watch: Watch) -> Arm:
             break
         watch.tell(phase="improving for all targets")
         some, began = random_part(squares, count, 0), watch.elapsed
-        refined = refine(some, Population.of(arm), iterations=steps, is_up=watch.is_up)
-        arm = refined.population.arm(0, task.base)
+        refined = refine(some, Shapes.of(arm), iterations=steps, is_up=watch.is_up)
+        arm = refined.shapes.arm(0, task.base)
         step = (watch.elapsed - began) / (steps * count)
     return arm
 
@@ -79,8 +79,8 @@ def _with_joint_1_clear(task: Task, arm: Arm, watch: Watch) -> Arm | None:
     """
     limits = task.robot.joint_limits
     around = replace(limits, base=Interval(-math.pi, math.pi))
-    free = improved(replace(task, robot=replace(task.robot, joint_limits=around)), arm, watch)
-    nearest = Postures.nearest(Aims(task.positions, around), Population.of(free).kinematics)
+    free = refined_for_all(replace(task, robot=replace(task.robot, joint_limits=around)), arm, watch)
+    nearest = Postures.nearest(TargetsSeen(task.positions_in_base, around), Shapes.of(free).kinematics)
     angles = np.sort(nearest.theta1[0])
     gaps = np.diff(angles, append=angles[0] + 2.0 * math.pi)
     widest = int(np.argmax(gaps))
@@ -95,7 +95,7 @@ def _with_joint_1_clear(task: Task, arm: Arm, watch: Watch) -> Arm | None:
     if shape is None:
         return None
     # The link's end has the same axis 2; what joint 2 needs, too, the steps see to.
-    return improved(task, in_equal_arcs(replace(free, robot=task.robot, shape=shape)), watch)
+    return refined_for_all(task, in_equal_arcs(replace(free, robot=task.robot, shape=shape)), watch)
 
 
 def random_part(task: Task, count: int, seed: int) -> Task:

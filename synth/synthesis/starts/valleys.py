@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
-    from synth.synthesis.starts.shapes import Population
+    from synth.synthesis.starts.shapes import Shapes
     from synth.task import Task
 
 # Rounds of the three steps; shapes kept; of these the parents, which miss differently; those of half of the
@@ -77,7 +77,7 @@ class Valleys:
     drawn: int
 
     @classmethod
-    def of(cls, task: Task, fresh: Population, watch: Watch | None = None) -> Valleys:
+    def of(cls, task: Task, fresh: Shapes, watch: Watch | None = None) -> Valleys:
         """Return what fresh shapes tell; when the watch is up, as far as they are."""
         watch = watch or Watch()
         best = _weighed(task, refine(task, fresh, is_up=watch.is_up), watch)
@@ -101,7 +101,7 @@ class Valleys:
 
     def _out_of_obstacles(self) -> Refined:
         best, is_up = self.best.best(_CLEARED), self.watch.is_up
-        deep = np.flatnonzero(overlaps(self.task, best.population, best.joints, is_up=is_up).any(axis=1))
+        deep = np.flatnonzero(overlaps(self.task, best.shapes, best.joints, is_up=is_up).any(axis=1))
         if not len(deep) or is_up():
             return self.best
         moved = _weighed(self.task, cleared(self.task, best.take(deep), is_up), self.watch)
@@ -117,7 +117,7 @@ class Valleys:
         agreeing = np.count_nonzero(self.fresh <= (1.0 + _SAME) * least)
         return bool(least > _SHEETS and agreeing >= max(_AGREEING * self.drawn, _ENOUGH))
 
-    def explored(self, draw: Callable[[], Population], rng: np.random.Generator) -> Valleys:
+    def explored(self, draw: Callable[[], Shapes], rng: np.random.Generator) -> Valleys:
         """Return what is known after a search for better valleys.
 
         Args:
@@ -135,13 +135,13 @@ class Valleys:
             now = now.with_fresh(draw())
         return now
 
-    def with_fresh(self, shapes: Population) -> Valleys:
+    def with_fresh(self, shapes: Shapes) -> Valleys:
         """Return what is known with some more fresh shapes, the worst of which are given up half-way."""
         first, last = _FRESH
         is_up = self.watch.is_up
         refined = refine(self.task, shapes, iterations=first, is_up=is_up)
         refined = refined.best(len(shapes.length) // _GO_ON)
-        refined = refine(self.task, refined.population, iterations=last, near=True, is_up=is_up)
+        refined = refine(self.task, refined.shapes, iterations=last, near=True, is_up=is_up)
         refined = _weighed(self.task, refined, self.watch)
         fresh = np.concatenate([self.fresh, refined.cost])
         return replace(
@@ -165,7 +165,7 @@ class Valleys:
 
 def _bent(task: Task, parents: Refined, rng: np.random.Generator, watch: Watch) -> Refined:
     """Return shapes after bending them at random by a little or more."""
-    bent = parents.population.varied(_SIZES, _LENGTHS, rng)
+    bent = parents.shapes.varied(_SIZES, _LENGTHS, rng)
     return _weighed(task, refine(task, bent, iterations=_BENT, near=True, is_up=watch.is_up), watch)
 
 
@@ -176,8 +176,8 @@ def _swapped(task: Task, parents: Refined, rng: np.random.Generator, watch: Watc
     chosen = np.argsort(rng.uniform(size=theta2.shape), axis=1) < swapped
     angles = np.where(chosen, rng.uniform(limits.lower, limits.upper, theta2.shape), theta2)
     first, last = _SWAPPED
-    led = refine(task, parents.population, angles, iterations=first, is_up=watch.is_up)
-    led = refine(task, led.population, iterations=last, near=True, is_up=watch.is_up)
+    led = refine(task, parents.shapes, angles, iterations=first, is_up=watch.is_up)
+    led = refine(task, led.shapes, iterations=last, near=True, is_up=watch.is_up)
     return _weighed(task, led, watch)
 
 
@@ -200,5 +200,5 @@ def _some_of_each_kind(refined: Refined, count: int) -> NDArray[np.intp]:
 
 def _weighed(task: Task, refined: Refined, watch: Watch) -> Refined:
     """Return shapes whose costs say, too, how deep they are inside obstacles or themselves, m^2."""
-    depth = overlaps(task, refined.population, refined.joints, is_up=watch.is_up)
+    depth = overlaps(task, refined.shapes, refined.joints, is_up=watch.is_up)
     return replace(refined, cost=refined.cost + np.mean(depth**2, axis=-1))

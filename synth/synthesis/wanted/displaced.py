@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.robot import Kinematics
-from synth.synthesis.starts import Aims, Postures
+from synth.synthesis.starts import Postures, TargetsSeen
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
@@ -29,7 +29,7 @@ def misses_displaced(arm: Arm, positions: FloatArray, shifts: FloatArray, turns:
     rotation, end = arm.end_frame
     centres = end + shifts + turns @ (arm.circle.centre - end)
     displaced = Kinematics(turns @ rotation, centres, np.full(len(turns), arm.circle.radius))
-    return np.sqrt(Postures.nearest(Aims(positions, arm.robot.joint_limits), displaced).squared)
+    return np.sqrt(Postures.nearest(TargetsSeen(positions, arm.robot.joint_limits), displaced).squared)
 
 
 def rotations(vectors: FloatArray) -> FloatArray:

@@ -18,7 +18,7 @@ import numpy as np
 
 from synth.arrays import FloatArray, frozen
 from synth.robot import Kinematics
-from synth.synthesis.starts import Aims, Postures
+from synth.synthesis.starts import Postures, TargetsSeen
 
 if TYPE_CHECKING:
     from synth.robot import Arm
@@ -111,13 +111,13 @@ def hand_forgiveness(task: Task, arm: Arm, joints: FloatArray | None = None) -> 
     some = _some(len(task.targets))
     positions = task.table.positions[some]
     there = arm.closest_joints(positions)[0] if joints is None else joints[some]
-    aims = Aims(arm.base.to_base(positions), task.robot.joint_limits)
+    aims = TargetsSeen(arm.base.to_base(positions), task.robot.joint_limits)
     worst, within = misses_after_a_hand(aims, task.tolerances[some], kinematics, end[None], there[None, :, 1])
     return Forgiveness(float(worst[0]), float(within[0]))
 
 
 def misses_after_a_hand(
-    aims: Aims, tolerances: FloatArray, kinematics: Kinematics, ends: FloatArray, theta2: FloatArray
+    aims: TargetsSeen, tolerances: FloatArray, kinematics: Kinematics, ends: FloatArray, theta2: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the expected worst misses of many shapes, m, and their chances, both of shape (N,).
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from synth.synthesis.starts import (
     ARM_LENGTH,
-    Aims,
-    Population,
     Postures,
+    Shapes,
+    TargetsSeen,
     overlaps,
 )
 from synth.synthesis.wanted.forgiveness import misses_after_a_hand
@@ -37,11 +37,11 @@ class Pool:
     """Shapes within the tolerances, the most wanted first.
 
     Attributes:
-        population: The shapes, of shape (N,).
+        shapes: The shapes, of shape (N,).
         table: Rows of `preferences`, shape (N, 6).
     """
 
-    population: Population
+    shapes: Shapes
     table: FloatArray
 
     @classmethod
@@ -49,7 +49,7 @@ class Pool:
         cls,
         task: Task,
         narrow: Task,
-        population: Population,
+        shapes: Shapes,
         stop: Callable[[], bool],
         part: float = _PART_OF_TOLERANCE,
     ) -> Pool:
@@ -58,23 +58,23 @@ class Pool:
         Args:
             task: The task.
             narrow: The same with limits drawn in.
-            population: The shapes.
+            shapes: The shapes.
             stop: When it says yes the obstacles are left out: nobody asks for these shapes any more.
             part: Of each tolerance, that a miss may take.
         """
-        aims = Aims(task.positions, narrow.robot.joint_limits)
-        postures = Postures.nearest(aims, population.kinematics)
+        aims = TargetsSeen(task.positions_in_base, narrow.robot.joint_limits)
+        postures = Postures.nearest(aims, shapes.kinematics)
         within = (np.sqrt(postures.squared) <= part * task.tolerances).all(axis=1)
         joints = postures.joints
-        within &= _over_floor(task, population, joints)
-        population, joints = population.take(within), joints[within]
-        depth = overlaps(narrow, population, joints, is_up=stop).max(axis=1, initial=0.0)
+        within &= _over_floor(task, shapes, joints)
+        shapes, joints = shapes.take(within), joints[within]
+        depth = overlaps(narrow, shapes, joints, is_up=stop).max(axis=1, initial=0.0)
         clearance = Margins.wanted(task.robot).clearance
         clear = depth <= clearance
-        population, joints, depth = population.take(clear), joints[clear], depth[clear]
+        shapes, joints, depth = shapes.take(clear), joints[clear], depth[clear]
         swings = swings_of(joints)
         expected, _ = misses_after_a_hand(
-            aims, task.tolerances, population.kinematics, population.end[1], joints[..., 1]
+            aims, task.tolerances, shapes.kinematics, shapes.end[1], joints[..., 1]
         )
         table = preferences(
             np.zeros(len(depth)),
@@ -82,24 +82,24 @@ class Pool:
             swings.max(axis=1, initial=0.0),
             expected,
             swings.sum(axis=1),
-            population.bending,
+            shapes.bending,
         )
-        return cls(population, table).sorted()
+        return cls(shapes, table).sorted()
 
     def sorted(self) -> Pool:
         """Return the same, the most wanted first."""
         chosen = preferred(self.table)
-        return Pool(self.population.take(chosen), self.table[chosen])
+        return Pool(self.shapes.take(chosen), self.table[chosen])
 
     def joined(self, other: Pool) -> Pool:
         """Return the shapes of both."""
         return Pool(
-            Population.joined([self.population, other.population]), np.concatenate([self.table, other.table])
+            Shapes.joined([self.shapes, other.shapes]), np.concatenate([self.table, other.table])
         ).sorted()
 
     def distinct(self) -> NDArray[np.intp]:
         """Return which shapes differ from all that are wanted more."""
-        frame, position = self.population.end
+        frame, position = self.shapes.end
         poses = np.hstack([position, ARM_LENGTH * frame[:, :, 0]])
         apart = np.linalg.norm(poses[:, None] - poses, axis=-1) >= _DISTINCT
         kept: list[int] = []
@@ -122,14 +122,14 @@ def swings_of(joints: FloatArray) -> FloatArray:
     return np.asarray(np.abs(np.diff(joints, axis=1)).max(axis=2))
 
 
-def _over_floor(task: Task, population: Population, joints: FloatArray) -> NDArray[np.bool_]:
+def _over_floor(task: Task, shapes: Shapes, joints: FloatArray) -> NDArray[np.bool_]:
     """Return which shapes stay over the floor, link, joint 2 and end effector, at samples of the link."""
     if task.floor is None:
         return np.ones(len(joints), dtype=np.bool_)
-    robot, (frame, end) = task.robot, population.end
-    link = population.centreline[:, :, 2].min(axis=1) - 0.5 * robot.link.diameter
+    robot, (frame, end) = task.robot, shapes.end
+    link = shapes.centreline[:, :, 2].min(axis=1) - 0.5 * robot.link.diameter
     along = np.array([-robot.tip_offset, robot.d34 - robot.tip_offset])
     axis = (end[:, 2, None] + along * frame[:, 2, 0, None]).min(axis=1)
-    tip = population.kinematics.each_target().forward(0.0, joints[..., 1])[..., 2].min(axis=1)
+    tip = shapes.kinematics.each_target().forward(0.0, joints[..., 1])[..., 2].min(axis=1)
     lowest = np.minimum(np.minimum(link, axis), tip - 0.5 * robot.rigid_link.diameter)
     return np.asarray(lowest >= task.floor)

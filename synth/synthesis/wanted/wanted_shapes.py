@@ -16,12 +16,12 @@ import numpy as np
 
 from synth.robot import Interval
 from synth.synthesis.starts import (
-    Aims,
-    Population,
     Postures,
+    Shapes,
+    TargetsSeen,
     estimated_misses,
-    exact_designs,
-    nearest_to_designs,
+    exact_arms,
+    nearest_to_exact_arms,
     refine,
     relative_weights,
 )
@@ -83,7 +83,7 @@ def wished(
         if stop():
             return
         for index in pool.distinct():
-            arm = pool.population.arm(index, task.base)
+            arm = pool.shapes.arm(index, task.base)
             angles, _ = arm.closest_joints(task.table.positions)
             yield replace(arm, robot=task.robot), angles
         if len(pool.table):
@@ -104,9 +104,9 @@ def _searched(
             break
         pool = pool.joined(_bred(task, calmer, (), _LED_CALMER, rng, stop))
     if float(task.tolerances.min()) < _TIGHT and len(pool.table):
-        chosen = pool.population.take(pool.distinct()[:_BENT])
+        chosen = pool.shapes.take(pool.distinct()[:_BENT])
         led = refine(narrow, chosen, iterations=_ITERATIONS_AGAIN, is_up=stop)
-        pool = Pool.of(task, narrow, led.population, stop, _EXACTLY)
+        pool = Pool.of(task, narrow, led.shapes, stop, _EXACTLY)
     return pool
 
 
@@ -137,14 +137,14 @@ def _bred(
     """Return the shapes that are wanted most of some random ones and of what bending makes of them."""
     beginnings = _promising(narrow, led, rng)
     if known:
-        shapes = Population(narrow.robot, Population.joined([Population.of(arm) for arm in known]).unknowns)
-        beginnings = Population.joined([beginnings, _varied(shapes, _FROM_KNOWN, rng)])
+        shapes = Shapes(narrow.robot, Shapes.joined([Shapes.of(arm) for arm in known]).unknowns)
+        beginnings = Shapes.joined([beginnings, _varied(shapes, _FROM_KNOWN, rng)])
     iterations = _ITERATIONS if known else _ITERATIONS_CALMER
     refined = refine(narrow, beginnings, iterations=iterations, is_up=stop)
-    pool = Pool.of(task, narrow, refined.population, stop)
+    pool = Pool.of(task, narrow, refined.shapes, stop)
     # Where targets are met exactly and fix finitely many surfaces, bending changes nothing that counts more
     # than the bend itself.
-    finite = float(task.tolerances.min()) < _TIGHT and exact_designs(narrow) is not None
+    finite = float(task.tolerances.min()) < _TIGHT and exact_arms(narrow) is not None
     gained = [np.full(_COUNTS, np.inf)]
     for _ in range(0 if finite else _ROUNDS):
         if stop() or not len(pool.table):
@@ -152,33 +152,35 @@ def _bred(
         gained.append(pool.table[0, :_COUNTS])
         if len(gained) > _PATIENCE and (gained[-1] > gained[-1 - _PATIENCE] - 0.2 * STEPS[:_COUNTS]).all():
             break
-        bent = _varied(pool.population.take(pool.distinct()[:_BENT]), _VARIED, rng)
+        bent = _varied(pool.shapes.take(pool.distinct()[:_BENT]), _VARIED, rng)
         refined = refine(_beside(narrow, rng), bent, iterations=_ITERATIONS_AGAIN, is_up=stop)
-        pool = pool.joined(Pool.of(task, narrow, refined.population, stop))
+        pool = pool.joined(Pool.of(task, narrow, refined.shapes, stop))
     return pool
 
 
-def _promising(task: Task, led: int, rng: np.random.Generator) -> Population:
+def _promising(task: Task, led: int, rng: np.random.Generator) -> Shapes:
     """Return random shapes that pass the targets nearly, and some near exact designs."""
     shapes = _random_shapes(task.robot)
     misses = np.minimum(estimated_misses(task, shapes), _FAR)
     order = np.argsort(relative_weights(task) @ misses**2, kind="stable")
     good = rng.permutation(order[:_GOOD])[:_ASKED]
-    postures = Postures.nearest(Aims(task.positions, task.robot.joint_limits), shapes.take(good).kinematics)
+    postures = Postures.nearest(
+        TargetsSeen(task.positions_in_base, task.robot.joint_limits), shapes.take(good).kinematics
+    )
     calm = good[np.argsort(swings_of(postures.joints).max(axis=1, initial=0.0), kind="stable")]
     chosen = np.union1d(order[: led - _LED // 2], calm[: _LED // 2])
-    if designs := exact_designs(task):
-        chosen = np.union1d(chosen, nearest_to_designs(shapes, designs, _PER_DESIGN))
+    if designs := exact_arms(task):
+        chosen = np.union1d(chosen, nearest_to_exact_arms(shapes, designs, _PER_DESIGN))
     return shapes.take(chosen)
 
 
 @lru_cache(maxsize=4)
-def _random_shapes(robot: Robot) -> Population:
+def _random_shapes(robot: Robot) -> Shapes:
     """Return random shapes of a robot, the same for all of its tasks."""
-    return Population.sample(robot, _SHAPES, np.random.default_rng(0))
+    return Shapes.sample(robot, _SHAPES, np.random.default_rng(0))
 
 
-def _varied(parents: Population, count: int, rng: np.random.Generator) -> Population:
+def _varied(parents: Shapes, count: int, rng: np.random.Generator) -> Shapes:
     """Return so many shapes bent at random by a little or more, some from each of the parents."""
     return parents.take(np.resize(np.arange(len(parents.length)), count)).varied(_SIZES, _LENGTHS, rng)
 

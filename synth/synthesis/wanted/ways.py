@@ -61,7 +61,7 @@ def motions(task: Task, design: Design) -> tuple[Motion, ...]:
 def routed(task: Task, design: Design) -> tuple[tuple[Motion, ...], FloatArray]:
     """Return the ways as `motions` does, and the joint angles that they take at each target, (n, 2), rad."""
     postures = joints_reaching(task, design.arm, design.verification)
-    ways = _Room(task, design).ways(postures)
+    ways = _Surroundings(task, design).ways(postures)
     cramped = [_CRAMPED * joint_shortfalls(task.robot, joints) for joints in postures]
     # To each posture of a target the least cost so far, rad, and which postures are taken on the way there.
     best: list[tuple[float, tuple[int, ...]]]
@@ -86,7 +86,7 @@ def _cost(way: FloatArray) -> float:
     return travel_of(way) if len(way) else _NO_WAY
 
 
-class _Room:
+class _Surroundings:
     """What an arm may bump into as its joints move."""
 
     def __init__(self, task: Task, design: Design) -> None:

@@ -10,8 +10,8 @@ import numpy as np
 from synth.arrays import FloatArray, frozen
 from synth.errors import GeometryError
 from synth.geometry.exact.conics import Conics
+from synth.geometry.exact.newton import folded, misses, polish, sorted_without_twins
 from synth.geometry.exact.pencil import members_of_radius
-from synth.geometry.exact.polish import folded, misses, polish, sorted_without_twins
 from synth.geometry.invariants import Invariants
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True)
-class Designs:
+class ExactArms:
     """The designs through each of many target sets, as arrays.
 
     A design stands for four arms: its mirror image has the same invariants, and (pi - alpha, -h) is the
@@ -70,7 +70,7 @@ def is_generic(targets: ArrayLike) -> BoolArray:
     return Conics.through(flat).generic.reshape(sets)
 
 
-def designs_through_five(targets: ArrayLike, *, tolerance: float = TOLERANCE) -> Designs:
+def arms_through_five(targets: ArrayLike, *, tolerance: float = TOLERANCE) -> ExactArms:
     """Return all designs through five targets: none, or two, each the `cognate` of the other (k = 2).
 
     Five points of the plane of (z, N) fix a conic. If it is an ellipse, a cubic has the two arms with this
@@ -78,7 +78,7 @@ def designs_through_five(targets: ArrayLike, *, tolerance: float = TOLERANCE) ->
 
     Only generic sets are answered. Targets in one plane z, on a sphere about a point of axis 1, or with
     two on one circle about it have infinitely many designs: see `planes_through`, `spheres_through`
-    and `sample_designs`.
+    and `sample_exact_arms`.
 
     Args:
         targets: Shape (..., 5, 3), m; only sqrt(x^2 + y^2) and z matter.
@@ -97,13 +97,13 @@ def designs_through_five(targets: ArrayLike, *, tolerance: float = TOLERANCE) ->
     return _answers(flat, sets, starts, possible & real & conics.generic[:, None], tolerance)
 
 
-def designs_through_four(targets: ArrayLike, radius: ArrayLike, *, tolerance: float = TOLERANCE) -> Designs:
+def arms_through_four(targets: ArrayLike, radius: ArrayLike, *, tolerance: float = TOLERANCE) -> ExactArms:
     """Return all designs with a known R through four targets: none, two, four or six (k = 6).
 
     The conics through four points of the plane of (z, N) form a pencil, in which those of arms with the
     radius R are the roots of a sextic: see `pencil`.
 
-    Only generic sets are answered, as in `designs_through_five`.
+    Only generic sets are answered, as in `arms_through_five`.
 
     Args:
         targets: Shape (..., 4, 3), m; only sqrt(x^2 + y^2) and z matter.
@@ -143,7 +143,7 @@ def _answers(
     tolerance: float,
     *,
     fixed_radius: bool = False,
-) -> Designs:
+) -> ExactArms:
     """Return what becomes of the possible starts, shape (S, k, 5), once polished, checked and folded."""
     rho, z = np.hypot(targets[..., 0], targets[..., 1]), targets[..., 2]
     places = starts.shape[1]
@@ -157,4 +157,4 @@ def _answers(
     worst[of_set[hit], place[hit]] = miss[hit]
     values, order = sorted_without_twins(values)
     worst = np.where(np.isnan(values[..., 0]), np.nan, np.take_along_axis(worst, order, axis=-1))
-    return Designs(values.reshape(*sets, places, 5), worst.reshape(*sets, places))
+    return ExactArms(values.reshape(*sets, places, 5), worst.reshape(*sets, places))
