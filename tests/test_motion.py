@@ -80,7 +80,7 @@ def test_without_obstacles_no_way_around_is_looked_for(monkeypatch):
     def never(*_):
         raise AssertionError
 
-    monkeypatch.setattr("synth.synthesis.wanted.ways._shortest", never)
+    monkeypatch.setattr("synth.synthesis.wanted.ways.shortest_path", never)
     for seed in range(5):
         task, arm = planted_task(seed, 5)
         assert len(motions(task, Design(arm, verify(task, arm)))) == 4
