@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.robot import BasePose
-from synth.synthesis import misses_displaced, rotations
+from synth.synthesis import Displacements, misses_displaced, rotations
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
@@ -97,7 +97,10 @@ def _tried(task: Task, design: Design, position: float, direction: float) -> tup
 
     def used(shifts: FloatArray, turns: FloatArray) -> float:
         """Return the largest share of its slack that an error takes from a target."""
-        lost = misses_displaced(arm, task.positions_in_base[barely], shifts, turns) - check.misses[barely]
+        lost = (
+            misses_displaced(arm, task.positions_in_base[barely], Displacements(shifts, turns))
+            - check.misses[barely]
+        )
         return float(np.max(lost / np.maximum(slack[barely], _NO_SLACK)))
 
     for _ in range(_TRIALS):

@@ -1,7 +1,7 @@
 """What a person wants of a shape: ways, margins, forgiveness of the hand, calm; and shapes that have it."""
 
 from synth.synthesis.wanted.design import Design
-from synth.synthesis.wanted.displaced import misses_displaced, rotations
+from synth.synthesis.wanted.displaced import Displacements, misses_displaced, rotations
 from synth.synthesis.wanted.forgiveness import HAND_PLACES, HAND_TURNS, Forgiveness, hand_forgiveness
 from synth.synthesis.wanted.judging import judged
 from synth.synthesis.wanted.motion import Motion
@@ -14,6 +14,7 @@ __all__ = [
     "HAND_TURNS",
     "MOST_MOTIONS",
     "Design",
+    "Displacements",
     "Forgiveness",
     "Motion",
     "best_of",

@@ -1,35 +1,65 @@
-"""What arms miss whose link does not end where it should, joint angles computed anew for where it does."""
+"""Arms whose link does not end where it should, joint angles computed anew for where it does."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, frozen
 from synth.robot import Kinematics
 from synth.synthesis.starts import Postures, TargetsSeen
 
 if TYPE_CHECKING:
-    from synth.arrays import FloatArray
     from synth.robot import Arm
 
 
-def misses_displaced(arm: Arm, positions: FloatArray, shifts: FloatArray, turns: FloatArray) -> FloatArray:
+@dataclass(frozen=True, eq=False)
+class Displacements:
+    """How far the ends of links are from where they should be.
+
+    Attributes:
+        shifts: Of the end, in the base frame at joint 1 = 0, shape (k, 3), m.
+        turns: Of its frame about itself, likewise, shape (k, 3, 3).
+    """
+
+    shifts: FloatArray
+    turns: FloatArray
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "shifts", frozen(self.shifts))
+        object.__setattr__(self, "turns", frozen(self.turns))
+
+    def on(self, kinematics: Kinematics, ends: FloatArray) -> Kinematics:
+        """Return the joints of shapes after each displacement, shape (N * k,), shape by shape.
+
+        Args:
+            kinematics: The joints of the shapes, of shape (N,).
+            ends: Where their links end, shape (N, 3), m: what the frame turns about.
+        """
+        frame = self.turns @ kinematics.frame[:, None]
+        lever = (self.turns @ (kinematics.centre - ends)[:, None, :, None])[..., 0]
+        centre = ends[:, None] + self.shifts + lever
+        radius = np.repeat(kinematics.radius, len(self.shifts))
+        return Kinematics(frame.reshape(-1, 3, 3), centre.reshape(-1, 3), radius)
+
+
+def misses_displaced(arm: Arm, positions: FloatArray, displacements: Displacements) -> FloatArray:
     """Return the misses of arms whose link ends elsewhere, joints at their best within their limits.
 
     Args:
         arm: The robot in the shape aimed at.
         positions: Targets in the base frame, shape (n, 3), m.
-        shifts: By how much the link's end is off, in the base frame at joint 1 = 0, shape (k, 3), m.
-        turns: By which rotation about itself, likewise, shape (k, 3, 3).
+        displacements: How far the link's end is off.
 
     Returns:
         Distances of P5 from the targets, shape (k, n), m.
     """
-    rotation, end = arm.end_frame
-    centres = end + shifts + turns @ (arm.circle.centre - end)
-    displaced = Kinematics(turns @ rotation, centres, np.full(len(turns), arm.circle.radius))
-    return np.sqrt(Postures.nearest(TargetsSeen(positions, arm.robot.joint_limits), displaced).squared)
+    frame, end = arm.end_frame
+    aimed = Kinematics(frame[None], arm.circle.centre[None], np.array([arm.circle.radius]))
+    seen = TargetsSeen(positions, arm.robot.joint_limits)
+    return np.sqrt(Postures.nearest(seen, displacements.on(aimed, end[None])).squared)
 
 
 def rotations(vectors: FloatArray) -> FloatArray:

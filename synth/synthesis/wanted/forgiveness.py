@@ -16,11 +16,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
 from synth.robot import Kinematics
 from synth.synthesis.starts import Postures, TargetsSeen
+from synth.synthesis.wanted.displaced import Displacements, rotations
 
 if TYPE_CHECKING:
+    from synth.arrays import FloatArray
     from synth.robot import Arm
     from synth.task import Task
 
@@ -46,55 +47,21 @@ class Forgiveness:
     chance: float
 
 
-@dataclass(frozen=True, eq=False)
-class HandErrors:
-    """Where a hand may leave the link's end.
-
-    Attributes:
-        shifts: Displacements of the end, shape (E, 3), m.
-        turns: Rotations of its frame about itself, shape (E, 3, 3).
-    """
-
-    shifts: FloatArray
-    turns: FloatArray
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "shifts", frozen(self.shifts))
-        object.__setattr__(self, "turns", frozen(self.turns))
-
-    @classmethod
-    def of(cls, uniform: FloatArray) -> HandErrors:
-        """Return the errors that belong to points of the unit cube, shape (E, 6)."""
-        off, turned = (
-            np.maximum([of.inv_cdf(float(u)) for u in column], 0.0)
-            for of, column in ((_OFF, uniform[:, 0]), (_TURNED, uniform[:, 3]))
-        )
-        shifts = off[:, None] * _directions(uniform[:, 1:3])
-        return cls(shifts, _rotations(_directions(uniform[:, 4:6]), turned))
-
-    def on(self, kinematics: Kinematics, ends: FloatArray) -> Kinematics:
-        """Return the joints of shapes after each error, shape (N * E,), shape by shape.
-
-        Args:
-            kinematics: The joints of the shapes, of shape (N,).
-            ends: Where their links end, shape (N, 3), m: what the frame turns about.
-        """
-        frame = self.turns @ kinematics.frame[:, None]
-        lever = (self.turns @ (kinematics.centre - ends)[:, None, :, None])[..., 0]
-        centre = ends[:, None] + self.shifts + lever
-        radius = np.repeat(kinematics.radius, len(self.shifts))
-        return Kinematics(frame.reshape(-1, 3, 3), centre.reshape(-1, 3), radius)
-
-
 @cache
-def _hand() -> HandErrors:
+def _hand() -> Displacements:
     """Return the errors that every shape is judged by: a fixed sample that fills its space evenly."""
     # The additive recurrence of the root of g^7 = g + 1 (Roberts, 2018), in six dimensions.
     root = 1.0
     for _ in range(60):
         root = (1.0 + root) ** (1.0 / 7.0)
     steps = root ** -np.arange(1.0, 7.0)
-    return HandErrors.of((0.5 + np.arange(1.0, _ERRORS + 1.0)[:, None] * steps) % 1.0)
+    uniform = (0.5 + np.arange(1.0, _ERRORS + 1.0)[:, None] * steps) % 1.0
+    off, turned = (
+        np.maximum([of.inv_cdf(float(u)) for u in column], 0.0)
+        for of, column in ((_OFF, uniform[:, 0]), (_TURNED, uniform[:, 3]))
+    )
+    axes = _directions(uniform[:, 4:6])
+    return Displacements(off[:, None] * _directions(uniform[:, 1:3]), rotations(turned[:, None] * axes))
 
 
 def hand_forgiveness(task: Task, arm: Arm, joints: FloatArray | None = None) -> Forgiveness:
@@ -155,12 +122,3 @@ def _directions(uniform: FloatArray) -> FloatArray:
     height, angle = 2.0 * uniform[:, 0] - 1.0, 2.0 * np.pi * uniform[:, 1]
     across = np.sqrt(1.0 - height**2)
     return np.column_stack([across * np.cos(angle), across * np.sin(angle), height])
-
-
-def _rotations(axes: FloatArray, angles: FloatArray) -> FloatArray:
-    """Return rotations about unit vectors, shape (E, 3), by angles, shape (E,), rad; shape (E, 3, 3)."""
-    x, y, z = axes.T
-    zero = np.zeros_like(x)
-    cross = np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]]).transpose(2, 0, 1)
-    sin, versine = np.sin(angles)[:, None, None], (1.0 - np.cos(angles))[:, None, None]
-    return np.asarray(np.eye(3) + sin * cross + versine * (cross @ cross))
