@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import compared_by_value
 from synth.geometry.trigonometric import critical_angles, root_angles, sampling_angles
 
 if TYPE_CHECKING:
@@ -50,6 +51,7 @@ def closest_angles(
     return np.concatenate([_closest_in_block(section, *part) for part in parts])
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class _Section:
     """The curve (rho(t), z(t)) of P5(t) = c + cos(t) s + sin(t) q, with s and q of length R.

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.checks import Checks
 from synth.geometry import (
     Category,
     CategoryDistances,
@@ -20,18 +21,17 @@ from synth.geometry import (
 )
 from synth.robot.base_pose import BasePose
 from synth.robot.closest_joints import closest_joints
-from synth.robot.hardware import into_turn
+from synth.robot.hardware import Robot, into_turn
 from synth.robot.kinematics import Kinematics
+from synth.robot.link import LinkShape
 
 _SAME_BRANCH = 1e-5  # rad; branches nearer than this are one, met twice
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from synth.robot.hardware import Robot
-    from synth.robot.link import LinkShape
 
-
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class JointBranches:
     """The answers of the inverse kinematics: up to two branches for each point, the better first.
@@ -61,6 +61,7 @@ class JointBranches:
         return self.joints[self.miss <= tolerance]
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Arm:
     """A robot with its link stiffened in one shape. Points are in the task frame, in metres.
@@ -78,6 +79,15 @@ class Arm:
     d35: float
     d45: float
     base: BasePose = field(default_factory=BasePose)
+
+    def __post_init__(self) -> None:
+        checks = Checks(self)
+        checks.is_a("robot", Robot)
+        checks.is_a("shape", LinkShape)
+        checks.number("d35", above=0.0)
+        checks.number("d45", above=0.0)
+        checks.is_a("base", BasePose)
+        checks.refuse()
 
     @property
     def base_joint(self) -> FloatArray:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import compared_by_value
 from synth.robot.hardware import into_turn, turned
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 _NEWTON_STEPS = 6
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Kinematics:
     """The two joints of shapes whose arrays broadcast: leading axes "..." may be absent.

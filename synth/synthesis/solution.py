@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
+from synth.arrays import compared_by_value
 from synth.errors import SynthError
 from synth.sentences import SentenceEnum
 from synth.synthesis.check import TargetResult, target_results
@@ -66,7 +68,8 @@ class Release:
     task: Task
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class Solution:
     """The result of a synthesis.
 
@@ -134,7 +137,7 @@ class Solution:
         """
         return self.best.arm
 
-    @property
+    @cached_property
     def targets(self) -> tuple[TargetResult, ...]:
         """What becomes of each target in the best shape.
 

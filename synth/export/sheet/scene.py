@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import compared_by_value
 from synth.export.sheet.labels import Labels
 from synth.export.sheet.obstacle_outlines import draw_obstacle, ends_of
 from synth.guide import MARKERS
@@ -38,7 +39,8 @@ _FAR, _NEAR_SIDE = 250.0, 60.0  # mm; what begins farther off is not drawn, and 
 _AXIS_LENGTH = 9.0  # mm of paper to either side of the markers, drawn of an axis
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class Scene:
     """What all views show, in the task frame and in mm.
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import compared_by_value
 from synth.guide.loop.outlook import Outlook
 
 if TYPE_CHECKING:
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 _SAMPLES = 1000
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class SweptTarget:
     """What becomes of a target on the calibrated arm.

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import compared_by_value
 from synth.robot import ANYWHERE, ArcChains, Arm, BasePose, Interval, stepped
 from synth.rounding import told_apart
 
@@ -28,6 +29,7 @@ _LENGTH_SLACK = 1e-9
 _AIM = 1e-8
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class LinkFit:
     """A shape of the link for a measured pose.
@@ -86,6 +88,7 @@ def fit_link(
     return replace(_best(chains, _Bounds(robot, lower, upper), x, lower, upper), obstacle=obstacle)
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class _Bounds:
     """Bounds of d13, d14, d23, d24 as an aim of chains, the same for each."""

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import compared_by_value
 from synth.measurement.markers.arm_fit import ArmFit, fit_arm, marker_positions
 from synth.measurement.markers.markers import Place, Readings
 from synth.rounding import rounded_up
@@ -44,6 +45,7 @@ _FRAMES: dict[str, FloatArray] = {
 }
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Examination:
     """What is to be believed of readings.

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import compared_by_value
 from synth.robot import Kinematics, closest_joints, turned
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ def rotation_matrix(vector: FloatArray) -> FloatArray:
     return np.asarray(np.eye(3) + sine[..., None, None] * cross + versine[..., None, None] * (cross @ cross))
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class StandingArm:
     """Arms as they stand, in the frame of the measurement, m; leading axes "..." may be absent.

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Protocol, Self
 
 import numpy as np
 
+from synth.arrays import compared_by_value
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -46,6 +48,7 @@ class Aim(Protocol):
         ...
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Wish:
     """What is wanted of the chains at their aim: to be bent little or, with a present one, to change little.

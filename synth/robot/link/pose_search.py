@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import compared_by_value
 from synth.robot.hardware import turned
 from synth.robot.link.arc_chains import ArcChains
 from synth.robot.link.chain_steps import ARRIVED, Wish, eased, stepped
@@ -98,6 +99,7 @@ def links_to_poses(
     return [shape for rows in batches for shape in search.shapes(poses.take(rows))]
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class _Search:
     """Chains of few arcs, drawn at random, and the present shape."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import compared_by_value
 from synth.robot import ANYWHERE, ArcChains, stepped, turned
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 _STEPS = 40
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class LinkEnd:
     """How a link is to end, up to a turn about axis 1.
@@ -49,6 +51,7 @@ class LinkEnd:
         return [chains.shape(x[row, :-1]) for row in np.argsort(left, kind="stable")]
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class _Ends:
     """Ends as aims of chains: positions in units of the bend radius, (n, 3), and frames, (n, 3, 3)."""

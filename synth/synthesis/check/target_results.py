@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.synthesis.check.clearances import clear_of_everything
 
 if TYPE_CHECKING:
@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class TargetResult:
     """What becomes of one target. Positions in the task frame, m.
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.checks import refuse_unless
 from synth.robot import Arm
 from synth.synthesis.check.clearances import chosen_joints
@@ -18,7 +18,8 @@ from synth.synthesis.check.violations import Violation, violations
 from synth.task import Task
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class Verification:
     """What a shape really does for a task.
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import compared_by_value
 from synth.synthesis.starts.shapes import Shapes
 
 if TYPE_CHECKING:
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Refined:
     """Shapes at the bottoms of their valleys, or nearly.

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import compared_by_value
 from synth.synthesis.starts.exact_arms import exact_arms, nearest_to_exact_arms
 from synth.synthesis.starts.refined import relative_weights
 from synth.synthesis.starts.screening import screened, shapes_at_random
@@ -52,7 +53,8 @@ _SETTLED, _SETTLED_PART = 1e-5, 0.02
 _MOST_STARTS = {Objective.LEAST_SQUARES: 12, Objective.MINIMAX: 24}
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class Start:
     """A shape to polish.
 

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import compared_by_value
 from synth.synthesis.starts.overlaps import overlaps
 from synth.synthesis.starts.refined import Refined
 from synth.synthesis.starts.refinement import cleared, level, refine
@@ -58,6 +59,7 @@ _OF_A_KIND = 4
 _LEVELLED = 48  # valleys whose least worst miss is looked for
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Valleys:
     """What is known of the valleys of a task.

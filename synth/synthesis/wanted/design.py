@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from synth.arrays import compared_by_value
+
 if TYPE_CHECKING:
     from synth.robot import Arm
     from synth.synthesis.check import Verification
@@ -12,7 +14,8 @@ if TYPE_CHECKING:
     from synth.synthesis.wanted.motion import Motion
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class Design:
     """A shape of the robot and what the independent check says of it.
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.robot import Kinematics
 from synth.synthesis.starts import Postures, TargetsSeen
 
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from synth.robot import Arm
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Displacements:
     """How far the ends of links are from where they should be.

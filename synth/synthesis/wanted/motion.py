@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Motion:
     """How the arm gets from one target to the next.

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import compared_by_value
 from synth.synthesis.starts import (
     ARM_LENGTH,
     Postures,
@@ -32,6 +33,7 @@ _PART_OF_TOLERANCE = 0.9
 _DISTINCT = 0.03  # m, between link ends with axes of ARM_LENGTH
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Pool:
     """Shapes within the tolerances, the most wanted first.
