@@ -33,10 +33,11 @@ def compared_by_value(cls: type[_T]) -> type[_T]:
         return self is other or all(
             _equal(getattr(self, field.name), getattr(other, field.name))
             for field in fields(self)  # type: ignore[arg-type]  # a dataclass
+            if field.compare
         )
 
     def hashed(self: object) -> int:
-        names = [field.name for field in fields(self)]  # type: ignore[arg-type]
+        names = [field.name for field in fields(self) if field.compare]  # type: ignore[arg-type]
         return hash((cls, *(_key(getattr(self, name)) for name in names)))
 
     cls.__eq__ = equal  # type: ignore[method-assign]

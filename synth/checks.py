@@ -7,7 +7,6 @@ knows lines and units; it takes its sentences and its rules for words, names and
 
 from __future__ import annotations
 
-import difflib
 import math
 from enum import Enum
 from numbers import Real
@@ -16,10 +15,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from synth.errors import InputError, Mistake
+from synth.names import did_you_mean
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
     from synth.arrays import FloatArray
 
 # m, rad or 1/m. Wide, so that only slips are caught, and what overflows when it is squared; files allow a
@@ -215,34 +213,6 @@ def refuse_unless(key: str, value: object, kind: type) -> None:
 
 def _article(kind: type) -> str:
     return f"{'an' if kind.__name__[0] in 'AEIOU' else 'a'} {kind.__name__}"
-
-
-def given_twice(names: Sequence[str]) -> list[tuple[int, int]]:
-    """Return where names stand that stood before, each with the place where it stood first."""
-    if len(set(names)) == len(names):
-        return []
-    first: dict[str, int] = {}
-    places = ((index, first.setdefault(name, index)) for index, name in enumerate(names))
-    return [(index, before) for index, before in places if before != index]
-
-
-def did_you_mean(word: object, known: Iterable[str]) -> str:
-    """Return `; did you mean 'this'?` for a word close to a known one, and nothing otherwise."""
-    return "".join(f"; did you mean {close!r}?" for close in guesses(word, known))
-
-
-def guesses(word: object, known: Iterable[str]) -> list[str]:
-    """Return the known word closest to one that is not known, in a list of one or none."""
-    return difflib.get_close_matches(word.lower(), list(known), n=1) if isinstance(word, str) else []
-
-
-def told_apart(first: float, second: float) -> tuple[str, str]:
-    """Write two different numbers with as few digits as show that they differ, six at least."""
-    for digits in range(6, 17):
-        texts = f"{first:.{digits}g}", f"{second:.{digits}g}"
-        if texts[0] != texts[1]:
-            return texts
-    return repr(first), repr(second)
 
 
 def described(value: object) -> str:

@@ -88,3 +88,12 @@ def _rounded(value: float, unit: Unit, digits: int, rounding: str) -> str:
         return f"{value}"
     number = unit.of(value).quantize(Decimal(1).scaleb(-digits), rounding, _ANY_DOUBLE)
     return f"{number:f}" if number else f"{abs(number):f}"  # no "-0.0"
+
+
+def written_apart(first: float, second: float) -> tuple[str, str]:
+    """Write two different numbers with as few digits as show that they differ, six at least."""
+    for digits in range(6, 17):
+        texts = f"{first:.{digits}g}", f"{second:.{digits}g}"
+        if texts[0] != texts[1]:
+            return texts
+    return repr(first), repr(second)

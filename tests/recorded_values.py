@@ -14,25 +14,25 @@ from planted import ROBOT, planted_task
 from planted_obstacles import planted_with_obstacles
 from sampled_shapes import noisy_task
 from standing import BARS, HOLD, SIGMA, seen
-from synth.guide.checking import check_arm
-from synth.guide.forgiving import most_forgiving
-from synth.guide.settings import best_settings
-from synth.guide.swept_targets import swept_targets
-from synth.measurement.calibration import calibrate
-from synth.synthesis.watch import Watch
-from synth.task.measured import Precision
-from synth.task.measured_file import parse_measurements
 
 import synth
 from synth.errors import Mistake
 from synth.export import write_files
 from synth.geometry import Box, Capsule, Sphere, planes_through, spheres_through
 from synth.guide import make_guide
+from synth.guide.loop.checking import check_arm
+from synth.guide.loop.forgiving import most_forgiving
+from synth.guide.loop.settings import best_settings
+from synth.guide.loop.swept_targets import swept_targets
 from synth.measurement import StandingArm, examine, inspect
+from synth.measurement.distances.measured import Precision
+from synth.measurement.distances.reading import parse_measurements
+from synth.measurement.markers.calibration import calibrate
 from synth.robot import Arm, LinkShape, Workspace, link_to_pose, why_no_link
 from synth.synthesis import Release, solve, verify
 from synth.synthesis.bound import prove
 from synth.synthesis.relaxed_limits import limits_of
+from synth.watch import Watch
 
 # These hold symbolic expressions, and a figure: of neither can anybody say whether it is equal to another.
 WITHOUT_A_VALUE = {"Derivation", "_Piece", "Page"}

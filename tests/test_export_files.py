@@ -16,7 +16,8 @@ from matplotlib.figure import Figure
 from pypdf import PdfReader
 
 from synth.errors import SynthError
-from synth.export import draw_sheet, markers_csv, prepare_directory, typesetting, write_files
+from synth.export import draw_sheet, markers_csv, prepare_directory, write_files
+from synth.export.sheet import typesetting
 from synth.export.sheet.missed_page import fill_missed
 from synth.export.sheet.obstacle_outlines import clipped, solid_outline
 from synth.export.sheet.page import HEIGHT, WIDTH, Page

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextPath
 
-from synth.export import typesetting
+from synth.export.sheet import typesetting
 from synth.export.sheet.typesetting import FAMILY, families, legible, shortened, width, wrapped
 
 WORDS = st.lists(st.text("abcXYZ0.()-äß字", min_size=1, max_size=40), max_size=30).map(" ".join)

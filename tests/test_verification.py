@@ -10,7 +10,8 @@ from planted import ROBOT, arm_of, planted_task, scanned
 from synth.errors import InputError
 from synth.geometry import Sphere
 from synth.robot import BasePose, Interval, JointLimits, LinkShape, MalleableLink, RigidLink
-from synth.synthesis import room, verify
+from synth.synthesis import verify
+from synth.synthesis.check import clearances
 from synth.task import Obstacle, PointTarget, Topology
 
 
@@ -178,12 +179,12 @@ def test_joints_that_are_to_be_kept_are_kept_within_the_tolerance_only(planted):
 def test_many_joint_angles_are_clear_as_each_of_them_is(monkeypatch):
     task, arm = scanned(1500, noise=0.0)
     angles = np.random.default_rng(0).uniform(0.0, 2.0 * np.pi, (1500, 2))  # some of them in the arm itself
-    one_by_one = room.clear_of_everything(task, arm, angles)
+    one_by_one = clearances.clear_of_everything(task, arm, angles)
     assert 0.02 < np.mean(one_by_one) < 0.98
-    monkeypatch.setattr(room, "_TOGETHER", 100)
-    assert np.array_equal(room.clear_of_everything(task, arm, angles), one_by_one)
+    monkeypatch.setattr(clearances, "_TOGETHER", 100)
+    assert np.array_equal(clearances.clear_of_everything(task, arm, angles), one_by_one)
     sphere = Obstacle("ball", Sphere(arm.forward_kinematics(1.0, 3.0), 0.05))
     beside = replace(task, obstacles=(sphere,))
-    of_all = room.Room.of(beside, arm, angles)
-    assert np.array_equal(room.clear_of_everything(beside, arm, angles), of_all.clear)
+    of_all = clearances.Clearances.of(beside, arm, angles)
+    assert np.array_equal(clearances.clear_of_everything(beside, arm, angles), of_all.clear)
     assert np.count_nonzero(of_all.clear) < np.count_nonzero(one_by_one)

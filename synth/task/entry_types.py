@@ -14,7 +14,8 @@ from pydantic import (
     Tag,
 )
 
-from synth.checks import told_apart, wrong_name
+from synth.checks import wrong_name
+from synth.rounding import written_apart
 
 ONE, RANGE, TEXT, MAPPING = "<one>", "<range>", "<text>", "<mapping>"  # tags of unions, never keys
 SURFACES_TO_COME = ("sphere", "plane", "torus", "mesh")
@@ -24,13 +25,13 @@ LARGEST = 1e6
 
 def _in_order(limits: list[float]) -> list[float]:
     if limits[0] > limits[1]:
-        raise ValueError(f"must run from low to high, but is [{', '.join(told_apart(*limits))}]")
+        raise ValueError(f"must run from low to high, but is [{', '.join(written_apart(*limits))}]")
     return limits
 
 
 def _within_a_turn(limits: list[float]) -> list[float]:
     if limits[1] - limits[0] > 360:
-        wide, _ = told_apart(limits[1] - limits[0], 360.0)
+        wide, _ = written_apart(limits[1] - limits[0], 360.0)
         raise ValueError(f"must be at most 360 degrees wide, but is {wide}")
     return limits
 

@@ -9,8 +9,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from synth.arrays import FloatArray, compared_by_value, frozen
-from synth.checks import Checks, described, given_twice, wrong_type
+from synth.checks import Checks, described, wrong_type
 from synth.geometry import Box, Capsule, Sphere
+from synth.names import given_twice
 from synth.robot import BasePose, LinkShape, Robot
 from synth.task.targets import PointTarget, TargetTable
 

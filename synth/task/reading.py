@@ -10,9 +10,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from synth.checks import described, did_you_mean
+from synth.checks import described
 from synth.errors import InputError, Mistake
 from synth.files import Document, KeyPath, read_file, read_text
+from synth.names import did_you_mean
 from synth.robot import PRESETS
 from synth.task.entry_types import SURFACES_TO_COME
 from synth.task.entry_values import default_name, to_robot, to_task

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from synth.arrays import FloatArray, compared_by_value
-from synth.checks import LONGEST_NAME, SMALLEST, Checks, described, given_twice, wrong_name
+from synth.checks import LONGEST_NAME, SMALLEST, Checks, described, wrong_name
+from synth.names import given_twice
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from synth.checks import described, did_you_mean, guesses
+from synth.checks import described
 from synth.files import KeyPath, Refused, key_text
+from synth.names import did_you_mean, guesses
 from synth.task.entry_types import MAPPING, ONE, RANGE, SURFACES_TO_COME, TEXT
 
 if TYPE_CHECKING:

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.checks import Checks, told_apart
+from synth.checks import Checks
 from synth.robot.hardware.interval import Interval, check_interval, check_lengths
+from synth.rounding import written_apart
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -172,11 +173,11 @@ def no_triangle(d34: float, d35: tuple[float, float], d45: tuple[float, float]) 
     """
     slack, longest = _FLAT * d34, d35[1] + d45[1]
     if longest < d34 - slack:
-        most, needed = told_apart(longest, d34)
+        most, needed = written_apart(longest, d34)
         return f"no triangle P3 P4 P5: d35 + d45 is at most {most}, less than d34 = {needed}"
     for longer, shorter, gap in (("d35", "d45", d35[0] - d45[1]), ("d45", "d35", d45[0] - d35[1])):
         if gap > d34 + slack:
-            least, allowed = told_apart(gap, d34)
+            least, allowed = written_apart(gap, d34)
             return (
                 f"no triangle P3 P4 P5: {longer} exceeds {shorter} by at least {least}, "
                 f"more than d34 = {allowed}"

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from synth.checks import LARGEST, Checks, described, numbers_in, told_apart, wrong_number
+from synth.checks import LARGEST, Checks, described, numbers_in, wrong_number
 from synth.errors import InputError
+from synth.rounding import written_apart
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,7 @@ class Interval:
                 checks.number(key, least=-math.inf, most=math.inf)
         checks.refuse()
         if self.lower > self.upper:
-            ends = told_apart(self.lower, self.upper)
+            ends = written_apart(self.lower, self.upper)
             checks.report("", f"must run from low to high, but is [{', '.join(ends)}]")
         checks.refuse()
 

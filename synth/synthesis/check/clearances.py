@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import compared_by_value
 from synth.robot import Arm, ArmBody
 
 if TYPE_CHECKING:
@@ -87,7 +88,8 @@ def _rod_from_tube(body: ArmBody, theta2: FloatArray) -> FloatArray:
     return bounds
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class Clearances:
     """What the arm keeps clear of, as lower bounds of distances, m; see `ArmBody`.
 

@@ -37,8 +37,7 @@ class Shapes:
     Attributes:
         robot: The hardware.
         unknowns: Shape (..., 9), or (..., 11) where the rigid link is free: the curvatures (kx, ky)
-            of the ARCS equal arcs in units of the largest curvature, the link's length, m, and the
-            distances d35 and d45, m.
+            of the ARCS equal arcs in units of the largest one, the length, m, and d35 and d45, m.
     """
 
     robot: Robot

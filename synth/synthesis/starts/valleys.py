@@ -14,7 +14,7 @@ better one that is so narrow that all of them missed it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -60,6 +60,7 @@ _LEVELLED = 48  # valleys whose least worst miss is looked for
 
 
 @compared_by_value
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Valleys:
     """What is known of the valleys of a task.
@@ -73,7 +74,7 @@ class Valleys:
     """
 
     task: Task
-    watch: Watch
+    watch: Watch = field(compare=False)
     best: Refined
     fresh: FloatArray
     drawn: int

@@ -12,7 +12,7 @@ from planted_blocked import blocked_task
 from synth.export import solution_to_json
 from synth.guide import help_told, solution_text
 from synth.robot import PRESETS
-from synth.synthesis import explain, release, solve, verify
+from synth.synthesis import blocking, explain, solve, verify
 from synth.synthesis.solve import follow
 from synth.task import PointTarget, Task, load_task
 from synth.watch import Watch
@@ -77,8 +77,8 @@ def test_a_time_limit_is_kept_and_it_is_said_how_far_the_search_got(monkeypatch)
         searches.append(arguments)
         return follow(*arguments, **options)
 
-    monkeypatch.setattr(release, "follow", counted)
-    monkeypatch.setattr(release, "Watch", lambda limit, **options: Watch(limit, clock=Ticks(), **options))
+    monkeypatch.setattr(blocking, "follow", counted)
+    monkeypatch.setattr(blocking, "Watch", lambda limit, **options: Watch(limit, clock=Ticks(), **options))
     stopped = explain(solution, time_limit=5.0)
     assert len(searches) <= 5
     assert "was stopped early: 0 of" in stopped.notes[0]
@@ -112,8 +112,8 @@ def test_where_no_limit_helps_it_says_so_and_how_near_any_surface_passes(monkeyp
     solution = solved(six_targets_of_no_arm())
     assert not solution.found
     # Each limit on its own is what other tests are about; here none helps.
-    monkeypatch.setattr(release, "_released", lambda *_: None)
-    monkeypatch.setattr(release, "_base_moved", lambda *_: None)
+    monkeypatch.setattr(blocking, "_released", lambda *_: None)
+    monkeypatch.setattr(blocking, "_base_moved", lambda *_: None)
     explained = explain(solution)
     assert explained.releases == ()
     (note,) = explained.notes
@@ -131,25 +131,25 @@ def test_where_no_limit_helps_it_says_so_and_how_near_any_surface_passes(monkeyp
 
 def test_that_no_surface_passes_is_called_proven_only_where_algebra_proves_it(monkeypatch):
     solution = solved(six_targets_of_no_arm())
-    monkeypatch.setattr(release, "_released", lambda *_: None)
-    monkeypatch.setattr(release, "_base_moved", lambda *_: None)
+    monkeypatch.setattr(blocking, "_released", lambda *_: None)
+    monkeypatch.setattr(blocking, "_base_moved", lambda *_: None)
     assert "none was found that passes through all the targets" in explain(solution).notes[0]
-    monkeypatch.setattr(release, "exact_arms", lambda _: ())
+    monkeypatch.setattr(blocking, "exact_arms", lambda _: ())
     assert "by algebra none passes exactly through all the targets" in explain(solution).notes[0]
 
 
 def test_where_no_shape_at_all_is_left_it_says_that_too(monkeypatch):
     solution = solved(six_targets_of_no_arm())
-    monkeypatch.setattr(release, "_released", lambda *_: None)
-    monkeypatch.setattr(release, "_base_moved", lambda *_: None)
-    monkeypatch.setattr(release, "follow", lambda *_, **__: replace(solution, designs=()))
+    monkeypatch.setattr(blocking, "_released", lambda *_: None)
+    monkeypatch.setattr(blocking, "_base_moved", lambda *_: None)
+    monkeypatch.setattr(blocking, "follow", lambda *_, **__: replace(solution, designs=()))
     assert explain(solution).notes[0].endswith("nor any shape at all with all limits relaxed together")
 
 
 def test_where_several_limits_block_together_it_says_that(monkeypatch):
     task = load_task(PROBLEMS / "out-of-reach/task.yaml")
-    monkeypatch.setattr(release, "_released", lambda *_: None)
-    monkeypatch.setattr(release, "_base_moved", lambda *_: None)
+    monkeypatch.setattr(blocking, "_released", lambda *_: None)
+    monkeypatch.setattr(blocking, "_base_moved", lambda *_: None)
     (note,) = explain(solved(task)).notes
     assert "with all limits relaxed together the task is met" in note
 
