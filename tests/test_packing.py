@@ -9,9 +9,9 @@ from planted import ROBOT, planted_arm
 
 from synth.robot import BasePose, RigidLink
 from synth.synthesis.nlp import Structure, SynthesisNlp
-from synth.synthesis.nlp.packing import pack, unpack
-from synth.synthesis.population import ARCS, in_equal_arcs
-from synth.synthesis.separation import Separation
+from synth.synthesis.nlp.packing import packed, unpacked
+from synth.synthesis.nlp.planes import Separation
+from synth.synthesis.starts import ARCS, in_equal_arcs
 from synth.task import Objective, PointTarget, Task
 
 BASE = BasePose([0.1, -0.2, 0.3], 0.7)
@@ -49,10 +49,21 @@ def program_of(task, planes=()):
     return np.array(names), functions, ipopt._bounds
 
 
+def unknowns_of(task, planes=()):
+    """Return what knows the names of the unknowns of the program, and where they are."""
+    return SynthesisNlp(Structure.of(task), ARCS, planes)._x
+
+
+def values_of(task, arm, planes=()):
+    """Return the values of the unknowns for the arm, in the order of the program."""
+    overlaps = len(JOINTS) + 1 if planes else 0
+    return unknowns_of(task, planes).vector_of(packed(task, arm, JOINTS, overlaps, WEIGHTS))
+
+
 def test_each_unknown_has_the_value_of_its_name(rigid):
     task, arm = posed(rigid)
     names, _, _ = program_of(task)
-    values = pack(task, arm, JOINTS, 0, WEIGHTS)
+    values = values_of(task, arm)
     p1, p2, p3, p4 = arm.axis_points
     expected = {
         "curvature": (arm.shape.curvatures * ROBOT.link.min_bend_radius).ravel(),
@@ -79,7 +90,7 @@ def test_each_unknown_has_the_value_of_its_name(rigid):
 
 def test_a_shape_comes_back_as_it_was(rigid):
     task, arm = posed(rigid)
-    again, joints = unpack(task, pack(task, arm, JOINTS, 0, WEIGHTS), ARCS)
+    again, joints = unpacked(task, unknowns_of(task).by_name(values_of(task, arm)))
     assert joints == pytest.approx(JOINTS, abs=1e-15)
     assert again.shape.curvatures == pytest.approx(arm.shape.curvatures, abs=1e-12)
     assert again.shape.lengths == pytest.approx(arm.shape.lengths, abs=1e-15)
@@ -90,9 +101,9 @@ def test_a_shape_comes_back_as_it_was(rigid):
 def test_a_shape_that_the_link_takes_is_within_all_bounds_of_the_program(rigid):
     task, arm = posed(rigid)
     _, functions, bounds = program_of(task)
-    values = pack(task, arm, JOINTS, 0, WEIGHTS)
+    values = values_of(task, arm)
     floor, steepest = 0.0, 0.0
-    parameters = np.concatenate([task.positions.T.ravel(), WEIGHTS, [floor, steepest]])
+    parameters = np.concatenate([task.positions_in_base.T.ravel(), WEIGHTS, [floor, steepest]])
     objective, constraints = (part.full().ravel() for part in functions(values, parameters))
     for given, kind in ((values, "x"), (constraints, "g")):
         assert (given >= bounds[f"lb{kind}"] - 1e-10).all()
@@ -105,9 +116,9 @@ def test_a_shape_that_the_link_takes_is_within_all_bounds_of_the_program(rigid):
 def test_what_the_solver_oversteps_is_brought_back_into_the_bounds(rigid):
     task, arm = posed(rigid)
     names, _, _ = program_of(task)
-    values = pack(task, arm, JOINTS, 0, WEIGHTS)
+    values = values_of(task, arm)
     values[np.isin(names, ["curvature", "length", "s35", "s45", "theta1", "theta2"])] *= 3.0
-    again, joints = unpack(task, values, ARCS)
+    again, joints = unpacked(task, unknowns_of(task).by_name(values))
     robot = task.robot
     assert again.shape.bends.max() <= robot.link.max_curvature * (1.0 + 1e-12)
     assert again.shape.length == pytest.approx(robot.link.length.upper)
@@ -119,11 +130,11 @@ def test_overlaps_and_the_worst_miss_have_their_places():
     task, arm = posed(ROBOT.rigid_link, Objective.MINIMAX)
     planes = [Separation(0, 3, None, [0.0, 0.0, 1.0], -5.0)]
     names, _, _ = program_of(task, planes)
-    values = pack(task, arm, JOINTS, len(JOINTS) + 1, WEIGHTS)
+    values = values_of(task, arm, planes)
     assert len(values) == len(names)
     assert list(values[names == "overlap"]) == [0.0] * (len(JOINTS) + 1)
     worst = np.max(WEIGHTS * np.sum(MISSES**2, axis=1))
     assert values[names == "worst"] == pytest.approx([worst])
-    again, joints = unpack(task, values, ARCS)
+    again, joints = unpacked(task, unknowns_of(task, planes).by_name(values))
     assert again.shape.curvatures == pytest.approx(arm.shape.curvatures, abs=1e-12)
     assert joints == pytest.approx(JOINTS, abs=1e-15)
