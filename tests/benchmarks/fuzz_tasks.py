@@ -18,12 +18,14 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from oracle import OracleArm, distance_from_solid, longest_rod
 
+from synth.errors import InputError
 from synth.task import Task, parse_task
 
 KINDS = {"planted": 0.55, "impossible": 0.15, "wild": 0.3}
 TOPOLOGIES = {"any": 0.6, "general": 0.1, "puma": 0.1, "scara": 0.1, "spherical": 0.1}
 ROOM = 2e-3  # m: the least clearance of a planted arm
 _TRIES, _TRIES_BENT = 400, 25  # shapes drawn before the hardware is drawn anew
+_MEANT = 500.0  # mm from P1, a place that nobody takes for a mistaken unit, whatever robot is drawn here
 
 
 @dataclass
@@ -147,9 +149,21 @@ def random_content(rng, tags):
     return rounded(content)
 
 
-def parsed(content, targets=((0.0, 0.0, 0.0),)) -> Task:
-    """Return the values of a task file's content, with targets of no consequence where it has none."""
-    return parse_task({"targets": [{"position": list(point)} for point in targets]} | content)
+def parsed(content) -> Task:
+    """Return the values of a task file's content, with a target of no consequence where it has none."""
+    p1 = np.array(content.get("base", {"position": [0.0, 0.0, 0.0]})["position"])
+    return parse_task({"targets": [{"position": p1 + [_MEANT, 0.0, 0.0]}]} | content)
+
+
+def is_meant(content) -> bool:
+    """Whether a content is not refused because its sizes look like those of a mistaken unit of length."""
+    try:
+        parsed(content)
+    except InputError as error:
+        if "length_unit" not in str(error):
+            raise
+        return False
+    return True
 
 
 def random_arm(task: Task, rng) -> OracleArm:
@@ -273,7 +287,7 @@ def fuzz_task(number: int) -> FuzzTask:
         if joints is None:
             continue
         drawn = _drawn(rng, kind, content, task, arm, joints)
-        if drawn is None:
+        if drawn is None or not is_meant(drawn[0]):
             continue
         content, why, solvable = drawn
         if solvable:
