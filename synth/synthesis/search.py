@@ -130,6 +130,8 @@ class Search:
         self.polishing.polish(start)
         if self._led_astray(start) and self.polishing.keep(start.arm, start.joints).verification.possible:
             self.polishing.polish(start, near=True)
+        if self._lost(start):
+            self.polishing.by_squares.polish(start, near=True)
         self.starts += 1
         self.starts_found += self.polishing.found
         self._report()
@@ -174,6 +176,15 @@ class Search:
         """Whether polishing may have led away from a start that is nearly an answer, by long first steps."""
         sum_of_squares = self.part.objective is Objective.LEAST_SQUARES
         return sum_of_squares and not self.polishing.found and self._may_be_better(start)
+
+    def _lost(self, start: Start) -> bool:
+        """Whether a start passes through all targets, but for limits that it breaks, and the worst miss lost it.
+
+        Where every target can be met the objectives agree, and the sum of squares is the smoother one.
+        """
+        if self.polishing.found or self.part.objective is Objective.LEAST_SQUARES:
+            return False
+        return bool((start.misses(self.part) <= self.part.tolerances).all())
 
     def prove(self) -> None:
         """Bound how little any shape can miss, unless the search was stopped already."""

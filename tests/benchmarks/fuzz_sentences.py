@@ -37,7 +37,6 @@ _CLEARANCE_SLACK = 2e-5  # m: by so much a clearance may be told to be less than
 _FIXED_LINES = (
     r"solving with --(why|prove) .*",
     r"more time may find a shape",
-    r"seed 0, \d+ starts?, \d+\.\d\d s",
 )
 
 
@@ -252,6 +251,13 @@ def _shapes(told: Told, count, best):
         yield Fault("untrue", f"{count} shapes, the {best}: there are {others} others")
 
 
+def _search(told: Told, seed, starts, time):
+    content = told.content
+    if (int(seed), int(starts)) != (content["seed"], content["starts"]):
+        yield Fault("untrue", f"seed {seed}, {starts} starts")
+    yield from wrongly_told("time", time, content["time"]["total"], "near")
+
+
 def _all_ways(told: Told, count):
     if int(count) != len(told.content["ways"]):
         yield Fault("untrue", f"{count} ways in all")
@@ -273,4 +279,5 @@ _LINES: dict[str, Callable[..., Iterator[Fault]]] = {
     r"and (\d+) more of this kind": _more_reasons,
     r"(\d+) distinct shapes; this is shape 1, the (best|nearest) \(--all lists them, --shape K shows another\)": _shapes,
     r"(\d+) ways from target to target in all: see solution\.json": _all_ways,
+    rf"seed (\d+), (\d+) starts?, {_NUMBER} s": _search,
 }
