@@ -41,7 +41,7 @@ class HoldPosture:
 def hold_posture(task: Task, arm: Arm) -> HoldPosture:
     """Return a posture that the joints can take and in which the arm, once bent, is clear of everything.
 
-    Both are in tenths of a degree. Joint 2 is straight on if that can be, else as near to it as can be. Joint 1 is at 0 if that can be, else
+    Joint 2 is straight on if that can be, else as near to it as can be. Joint 1 is at 0 if that can be, else
     as near as can be to the middle of its range. If no posture that is tried is clear, it is the first of
     them, and says so.
 

@@ -178,7 +178,7 @@ class Search:
         return sum_of_squares and not self.polishing.found and self._may_be_better(start)
 
     def _lost(self, start: Start) -> bool:
-        """Whether a start passes through all targets, but for limits that it breaks, and the worst miss lost it.
+        """Whether a start passes through all targets, whatever limits it breaks, and its polishing lost them.
 
         Where every target can be met the objectives agree, and the sum of squares is the smoother one.
         """

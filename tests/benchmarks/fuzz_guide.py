@@ -6,12 +6,15 @@ What is told of errors is tried: arms whose link ends a little elsewhere, in man
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from fuzz_faults import Fault, wrongly_told
 from oracle import OracleArm, rotation, turned
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
 
 _NUMBER = r"(-?\d+\.?\d*)"
 _HAND = r"a hand as published \(9\.6 ± 2\.1 mm, 4 ± 1\.2 deg\) meets every target in"
@@ -135,7 +138,7 @@ def _hold(told, first, second, not_clear):
         yield Fault("untrue", f"the posture to hold is not clear: {breaches}")
 
 
-def link_faults(told: Told, length, radius, bend):
+def link_faults(told, length, radius, bend):
     """Check the numbers of the link; as good as straight is what bends less than a hand can tell."""
     yield from wrongly_told("link long", length, 1e3 * told.arm.length, "near")
     true = 1e3 / max(float(told.arm.bends.max()), 1e-12)
@@ -242,25 +245,28 @@ _ANY_LINK = rf"link {_NUMBER} mm long, smallest bend radius {_NUMBER} mm, {_NUMB
 _STRAIGHT = rf"link {_NUMBER} mm long, as good as straight"
 _BENT = (
     rf"\. Bend it nowhere tighter than to a radius of {_NUMBER} mm\. P3 and P4 come to their places; "
-    r"(?:(L\d+) is the middle of the tube, (\d+) mm along from P2, END its end|END is the end of the tube, in its "
-    r"middle)\."
+    r"(?:(L\d+) is the middle of the tube, (\d+) mm along from P2, END its end|"
+    r"END is the end of the tube, in its middle)\."
 )
 _STEP = r"\d+\. "
+_XYZ = rf"\({_NUMBER}, {_NUMBER}, {_NUMBER}\)"
+_WITHIN = rf"{_STEP}Hold axis 2 within {_NUMBER} mm \((\w+)\)"
+_TAPE = r"By tape: (.*) mm\."
 GUIDE_LINES: dict[str, Callable[..., Iterator[Fault]]] = {
     rf"No hand holds this at the first try: {_HAND} less than 2 % of tries, {_THEN}{_SO}": _little_chance,
     rf"At the first try {_HAND} about (\d+) % of tries, {_THEN}{_SO}": _chance,
-    rf"{_STEP}The base stands with P1 at \({_NUMBER}, {_NUMBER}, {_NUMBER}\) mm, turned by {_NUMBER} deg\.": _base,
+    rf"{_STEP}The base stands with P1 at {_XYZ} mm, turned by {_NUMBER} deg\.": _base,
     rf"{_STEP}Cut the rigid link to d35 = {_NUMBER} mm and d45 = {_NUMBER} mm, from P3 and P4 to P5\.": _cut,
     rf"{_STEP}Set joint 1 to {_NUMBER} deg and hold it there, joint 2 at {_NUMBER} deg\."
     r"( No posture was found in which the bent arm is clear of everything: make room for it\.)?": _hold,
     rf"{_STEP}Soften the link and shape it: {_ANY_LINK}{_BENT}": _soften,
     rf"{_STEP}Soften the link and shape it: {_STRAIGHT}{_BENT}": _soften_straight,
     rf"{_STEP}Axis 2 runs through END, P3 and P4: from P3 to P4 {_NUMBER} deg (above|below) horizontal, "
-    rf"heading {_NUMBER} deg \(from x towards y\)\. By tape: (.*) mm\.": _axis,
-    rf"{_STEP}Axis 2 runs through END, P3 and P4 and is vertical, P4 (above|below) P3\. By tape: (.*) mm\.": _upright,
-    rf"{_STEP}Hold axis 2 within {_NUMBER} mm \((\w+)\) and {_NUMBER} deg \((\w+)\); within half of each if both "
+    rf"heading {_NUMBER} deg \(from x towards y\)\. {_TAPE}": _axis,
+    rf"{_STEP}Axis 2 runs through END, P3 and P4 and is vertical, P4 (above|below) P3\. {_TAPE}": _upright,
+    rf"{_WITHIN} and {_NUMBER} deg \((\w+)\); within half of each if both "
     rf"are off\. P3 off against P4 by {_NUMBER} mm across the axis is such a tilt\.": _precise,
-    rf"{_STEP}Hold axis 2 within {_NUMBER} mm \((\w+)\); its direction matters little: a tilt of {_NUMBER} deg "
+    rf"{_WITHIN}; its direction matters little: a tilt of {_NUMBER} deg "
     r"alone loses no target\.": _precise_in_place,
     r"Points in the task frame, mm:": _table,
     r"Points in the task frame, mm, on the link every (\d+) mm:": _table,

@@ -9,10 +9,11 @@ import numpy as np
 from fuzz_faults import Fault
 from fuzz_proofs import faults_of_bound, faults_of_reasons, searched
 from fuzz_sentences import Told, faults_of_text
-from fuzz_tasks import FuzzTask
 from oracle import SLACK, OracleArm, longest_rod
 
 if TYPE_CHECKING:
+    from fuzz_tasks import FuzzTask
+
     from synth.task import Task
 
 _WAY_SLACK = 3e-5  # m: by so much a clearance on a way is known to the package

@@ -1,4 +1,4 @@
-"""Whether what the terminal shows is true: every line must be one that is known, and every number in it right.
+"""Whether what the terminal shows is true: every line must be one that is known, every number in it right.
 
 A line that is worded anew is a fault until it is read anew here, or it would pass unread.
 """
@@ -6,15 +6,17 @@ A line that is worded anew is a fault until it is read anew here, or it would pa
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 from fuzz_faults import Fault, wrongly_told
 from fuzz_guide import GUIDE_LINES, faults_of_errors, link_faults
-from oracle import OracleArm
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from oracle import OracleArm
+
     from synth.task import Task
 
 _NUMBER = r"(-?\d+\.?\d*)"
@@ -60,6 +62,13 @@ class Told:
 
 
 def faults_of_text(told: Told, text: str) -> Iterator[Fault]:
+    """Check the message of the JSON, the text line by line, and by trial what is told of errors."""
+    yield from faults_of_lines(told, text)
+    if told.content["status"] == "found":
+        yield from faults_of_errors(told)
+
+
+def faults_of_lines(told: Told, text: str) -> Iterator[Fault]:
     """Check the message of the JSON, and the text line by line."""
     content = told.content
     if re.search(r"\bnan\b|\binf\b", content["message"] + text):
@@ -79,8 +88,6 @@ def faults_of_text(told: Told, text: str) -> Iterator[Fault]:
         elif not any(re.fullmatch(words, bare) for words in _FIXED_LINES):
             yield Fault("not judged", f"a line: {bare}")
     yield from _are_all_there(told, text)
-    if content["status"] == "found":
-        yield from faults_of_errors(told)
 
 
 def _message(told: Told) -> Iterator[Fault]:
@@ -162,7 +169,9 @@ def _target(told: Told, sign, name, word, miss, tolerance, default, theta1, thet
         short = 1e3 * (true - float(clear) * 1e-3)
         if short < -2e-3 or (not least and short > 0.1 + 1e3 * _CLEARANCE_SLACK * 5):
             yield Fault("untrue", f"{name}: clear by {clear} mm, it is {1e3 * true:.4f}")
-        if bool(least) != (target["clearance"] >= _FARTHEST - 1e-9):
+        if bool(least) != (target["clearance"] >= _FARTHEST - 1e-9) or (
+            least and float(clear) != 1e3 * _FARTHEST
+        ):
             yield Fault("untrue", f"{name}: whether clear by {clear} mm at least")
 
 
@@ -266,7 +275,8 @@ def _all_ways(told: Told, count):
 _LINES: dict[str, Callable[..., Iterator[Fault]]] = {
     _TARGET_LINE: _target,
     rf"(\w+) to (\w+): joint 1 by {_SIGNED} deg, joint 2 by {_SIGNED} deg"
-    r"( \(the long way round: the short one is closed by the limits of joint 1\))?(, by way of .* deg)?": _way,
+    r"( \(the long way round: the short one is closed by the limits of joint 1\))?"
+    r"(, by way of .* deg)?": _way,
     r"(\w+) to (\w+): no way was found that keeps clear": _no_way,
     rf"kind of shape: ([\w-]+)(?: to {_NUMBER} (mm|deg))?; (.*)": _kind,
     rf"link {_NUMBER} mm long, smallest bend radius {_NUMBER} mm, {_NUMBER} deg of bend in all": link_faults,
@@ -277,7 +287,8 @@ _LINES: dict[str, Callable[..., Iterator[Fault]]] = {
     r"(\d+) of (\d+) targets (is|are) within tolerance; the (\d+) worst:": _count_within,
     r"(\d+) targets? asked for, none reached: there is no shape": _none_reached,
     r"and (\d+) more of this kind": _more_reasons,
-    r"(\d+) distinct shapes; this is shape 1, the (best|nearest) \(--all lists them, --shape K shows another\)": _shapes,
+    r"(\d+) distinct shapes; this is shape 1, the (best|nearest) "
+    r"\(--all lists them, --shape K shows another\)": _shapes,
     r"(\d+) ways from target to target in all: see solution\.json": _all_ways,
     rf"seed (\d+), (\d+) starts?, {_NUMBER} s": _search,
 }
