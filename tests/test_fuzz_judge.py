@@ -112,8 +112,8 @@ def test_a_false_claim_that_is_planted_is_found(answer, plant, kind):
 
 
 _FAR = (
-    "{target} is at least 9999.9 mm from wherever the malleable link can end, and the rigid link reaches at most "
-    "9000.0 mm from there: it misses by at least 999.9 mm"
+    "{target} is at least 9999.9 mm from wherever the malleable link can end, and the rigid link reaches at "
+    "most 9000.0 mm from there: it misses by at least 999.9 mm"
 )
 _INSIDE = "the link starts at P2, at least 999.9 mm inside obstacle 1"
 
