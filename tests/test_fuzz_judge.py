@@ -11,8 +11,9 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parent / "benchmarks"))
 
 from fuzz_judge import arm_found, judge
+from fuzz_lines import Told
 from fuzz_proofs import faults_of_bound, faults_of_reasons
-from fuzz_sentences import Told, faults_of_lines
+from fuzz_sentences import faults_of_lines
 from fuzz_tasks import fuzz_task
 
 from synth.export import solution_to_json

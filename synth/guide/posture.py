@@ -84,4 +84,4 @@ def _by_distance(interval: Interval, wanted: float) -> FloatArray:
     above = np.arange(nearest, last + _ROUNDING, _STEP)[1:]
     angles = np.radians(np.concatenate([below, above]).round(_DIGITS))
     ordered = angles[np.argsort(np.abs(angles - wanted), kind="stable")]
-    return np.clip(ordered, interval.lower, interval.upper)
+    return np.asarray(np.clip(ordered, interval.lower, interval.upper))

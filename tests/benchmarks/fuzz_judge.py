@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from fuzz_faults import Fault
+from fuzz_lines import Told
 from fuzz_proofs import faults_of_bound, faults_of_reasons, searched
-from fuzz_sentences import Told, faults_of_text
+from fuzz_sentences import faults_of_text
 from oracle import SLACK, OracleArm, longest_rod
 
 if TYPE_CHECKING:
