@@ -1,12 +1,15 @@
 """Random tasks over the whole input space, each answer judged by a second implementation, tests/oracle.py.
 
     python tests/benchmarks/fuzz.py [--tasks 300] [--first 0] [--workers 2] [--limit 300] [--save DIR]
+                                    [--answers DIR] [--prove S]
 
 Other robots, free rigid links, joint ranges, places of the base, obstacles, floors, topologies, objectives,
 1 to 30 targets, tolerances of 0.01 to 20 mm. Planted tasks can be done, impossible ones cannot by
 construction, of wild ones nobody knows. Each is solved in a process of its own, which is ended when it takes
 far too long; what is at fault is printed with its task as YAML, or put into files by --save. One task again:
---numbers N.
+--numbers N. With --answers what was solved is kept, and a second run only judges it anew; --prove looks for
+a lower bound of each task, too, and holds it against every shape that is known. What cannot be drawn or
+judged is a fault of its own kind ("generator", "judge").
 """
 
 from __future__ import annotations

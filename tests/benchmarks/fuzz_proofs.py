@@ -25,7 +25,7 @@ _OUT_OF_REACH = (
     rf"at most {_NUMBER} mm from there: it misses by at least {_NUMBER} mm"
 )
 _BELOW_FLOOR = rf"(.+) is at least {_NUMBER} mm below the floor, and the end effector stays above it"
-_IN_SOLID = rf"(.+) is in (.+): the end effector would be at least {_NUMBER} mm inside"
+_IN_SOLID = rf"(.+) is in (.+): there the end effector would be at least {_NUMBER} mm inside"
 _START_BELOW = rf"the link starts at P2, at least {_NUMBER} mm below the floor"
 _START_INSIDE = rf"the link starts at P2, at least {_NUMBER} mm inside (.+)"
 _NO_ARM = r"no arm with this rigid link passes exactly through such (\d+) targets, by algebra"
@@ -71,7 +71,6 @@ def _proof(fuzz: FuzzTask, task: Task, reason: str) -> Iterator[list[Fault]]:
         target, rod = task.table.positions[indices[name]], 0.5 * task.robot.rigid_link.diameter
         depth = rod - float(distance_from_solid(solids[solid], target))
         yield wrongly_told(reason, number, 1e3 * depth, "down")
-        # Within its tolerance of the target the end effector may be so much less deep.
     elif found := re.fullmatch(_START_BELOW, reason):
         yield wrongly_told(reason, found.group(1), 1e3 * (task.floor - task.robot.d12), "down")
     elif found := re.fullmatch(_START_INSIDE, reason):
