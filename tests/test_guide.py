@@ -12,8 +12,14 @@ from hypothesis import strategies as st
 from synth.errors import SynthError
 from synth.geometry import Box, Sphere
 from synth.guide import MARKERS, guide_text, instructions, make_guide, solution_text, summary_text
-from synth.guide.instructions import axis_sentence, hold_sentence, link_sentence, tolerance_sentences
-from synth.guide.markers import SPACING, place
+from synth.guide.instructions import (
+    axis_sentence,
+    hold_sentence,
+    link_sentence,
+    station_sentence,
+    tolerance_sentences,
+)
+from synth.guide.markers import SPACING, _stations, place
 from synth.guide.posture import hold_posture
 from synth.guide.sensitivity import ShapeTolerance, shape_tolerance, tilt_rate
 from synth.guide.text import help_told
@@ -118,9 +124,40 @@ def test_the_hold_set_is_the_zero_set_turned_about_axis_1():
 def test_joint_1_is_held_at_zero_or_in_the_middle_of_its_range(limits, angle):
     robot = replace(ROBOT, joint_limits=JointLimits(Interval(*limits), ROBOT.joint_limits.second))
     posture = hold_posture(replace(TASK, robot=robot), replace(ARM, robot=robot))
-    assert posture.joint1 == pytest.approx(angle)
+    assert math.degrees(posture.joint1) == pytest.approx(round(math.degrees(angle), 1), abs=1e-9)
     assert posture.joint2 == pytest.approx(math.pi)
     assert posture.clear
+
+
+@given(
+    st.floats(-200.0, 300.0), st.floats(0.02, 60.0), st.floats(90.0, 250.0), st.floats(0.02, 60.0),
+)  # fmt: skip
+def test_the_angles_to_hold_are_within_the_limits_as_they_are_printed(first, wide, second, high):
+    ranges = [(first, first + wide), (second, second + high)]
+    limits = JointLimits(*(Interval(*map(math.radians, each)) for each in ranges))
+    robot = replace(ROBOT, joint_limits=limits)
+    task, arm = replace(TASK, robot=robot, floor=None), replace(ARM, robot=robot)
+    posture = hold_posture(task, arm)
+    said = re.findall(r"-?\d+\.\d", hold_sentence(replace(GUIDE, posture=posture)))
+    held = (posture.joint1, posture.joint2)
+    for number, angle, (low, high_end) in zip(said, held, ranges, strict=True):
+        if math.ceil(10.0 * low) > math.floor(10.0 * high_end):  # no such number is within
+            assert low - 1e-9 <= math.degrees(angle) <= high_end + 1e-9
+            continue
+        assert low - 1e-6 <= float(number) <= high_end + 1e-6
+        assert math.degrees(angle) == pytest.approx(float(number), abs=1e-6)  # and the points stand there
+
+
+@pytest.mark.parametrize("length", [0.04, 0.09, 0.6, 8.0])
+def test_the_point_on_the_link_that_the_words_name_is_one_of_the_table(length):
+    guide = replace(GUIDE, stations=_stations(length))
+    words = station_sentence(guide)
+    named = re.findall(r"(L\d+) is the middle of the tube, (\d+) mm", words)
+    assert "END" in words
+    assert bool(named) == (len(guide.stations) > 1)
+    for name, along in named:
+        index = guide.station_names.index(name)
+        assert 1e3 * guide.stations[index] == pytest.approx(float(along))
 
 
 def test_the_posture_to_hold_is_clear_of_obstacles_and_the_nearest_that_is():

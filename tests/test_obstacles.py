@@ -51,7 +51,9 @@ def test_a_target_in_an_obstacle_is_impossible():
     box = Box(task.positions_in_base[2], np.array([0.1, 0.2, 0.04]), 0.3)
     solution = solve(replace(task, obstacles=(Obstacle("crate", box),)))
     assert solution.status is Status.PROVEN_IMPOSSIBLE
-    assert solution.reasons == ("target 3 is in crate: the end effector would be at least 20.0 mm inside",)
+    assert solution.reasons == (
+        "target 3 is in crate: there the end effector would be at least 20.0 mm inside",
+    )
 
 
 def test_a_base_in_an_obstacle_is_impossible():

@@ -136,6 +136,14 @@ def test_minimax_lowers_the_worst_miss_and_least_squares_their_sum():
     assert np.sum(misses_squares**2) < np.sum(misses_worst**2)
 
 
+@pytest.mark.parametrize("seed", [4, 7])
+def test_what_can_be_met_is_found_by_the_worst_miss_too_however_the_tolerances_differ(seed):
+    task, _ = planted_task(seed, 16)
+    tolerances = 1e-3 * np.exp(np.random.default_rng(seed).uniform(np.log(0.01), np.log(10.0), 16))
+    table = replace(task.table, tolerances=tolerances)
+    assert solve(replace(task, targets=table, objective=Objective.MINIMAX), alternatives=0).found
+
+
 def test_a_heavier_weight_and_a_tighter_tolerance_draw_the_surface_nearer():
     task = noisy(7, 10, 0.02)
     plain = solve(task).targets[0].miss

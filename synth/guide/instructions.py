@@ -8,6 +8,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from synth.guide.sensitivity import LARGEST_TILT
 from synth.rounding import Unit, rounded_down, rounded_up
 from synth.synthesis import HAND_PLACES, HAND_TURNS
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
 _STRAIGHT = 100.0  # m, a bend radius that no eye and no hand can tell from none
 _NO_HAND = 0.02  # a chance below is none to count on, and too small to be told from so many tries
 _MOST_DIGITS = 6
+_EXAMPLE = 0.1  # m along the link: a point that tells what the others are
 
 
 def instructions(guide: Guide) -> tuple[str, ...]:
@@ -33,7 +36,7 @@ def instructions(guide: Guide) -> tuple[str, ...]:
     shape = (
         f"Soften the link and shape it: {link_sentence(guide.link)}. "
         f"Bend it nowhere tighter than to a radius of {limit} mm. "
-        "P3 and P4 come to their places; L100 is the middle of the tube, 100 mm along from P2, END its end."
+        f"P3 and P4 come to their places; {station_sentence(guide)}"
     )
     return (
         *steps,
@@ -43,6 +46,15 @@ def instructions(guide: Guide) -> tuple[str, ...]:
         " ".join(tolerance_sentences(guide)),
         *([] if guide.forgiveness is None else [hand_sentence(guide.forgiveness)]),
     )
+
+
+def station_sentence(guide: Guide) -> str:
+    """Return what the points on the link are, by the one nearest to 100 mm from P2 that the table has."""
+    if len(guide.stations) < 2:
+        return "END is the end of the tube, in its middle."
+    index = int(np.argmin(np.abs(guide.stations[:-1] - _EXAMPLE)))
+    name, along = guide.station_names[index], 1e3 * guide.stations[index]
+    return f"{name} is the middle of the tube, {along:.0f} mm along from P2, END its end."
 
 
 def cut_sentence(d35: float, d45: float) -> str:

@@ -16,7 +16,11 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 _STRAIGHT_ON = math.pi  # rad: joint 2 with the rigid link straight on from the malleable one
-_STEP = math.radians(5.0)  # between the angles that are tried
+_STEP = 5.0  # deg, between the angles that are tried
+# Angles are told in tenths of a degree. So they are tenths: what is printed is what everything stands at, and
+# no joint is told an angle just beyond its limit.
+_DIGITS = 1
+_ROUNDING = 1e-9  # deg
 
 
 @dataclass(frozen=True)
@@ -70,9 +74,14 @@ def _clear_by_itself(task: Task, body: ArmBody, seconds: FloatArray) -> FloatArr
 
 
 def _by_distance(interval: Interval, wanted: float) -> FloatArray:
-    """Return angles all over an interval, the nearest to the one wanted first, rad."""
-    nearest = min(max(wanted, interval.lower), interval.upper)
-    below = np.arange(nearest, interval.lower - 1e-9, -_STEP)
-    above = np.arange(nearest, interval.upper + 1e-9, _STEP)[1:]
-    angles = np.clip(np.concatenate([below, above]), interval.lower, interval.upper)
-    return np.asarray(angles[np.argsort(np.abs(angles - wanted), kind="stable")])
+    """Return angles all over an interval in tenths of a degree, the nearest to the one wanted first, rad."""
+    lower, upper = (math.degrees(limit) for limit in (interval.lower, interval.upper))
+    first, last = math.ceil(10.0 * lower - _ROUNDING) / 10.0, math.floor(10.0 * upper + _ROUNDING) / 10.0
+    if first > last:  # there is no tenth in so narrow a range
+        return np.array([interval.middle])
+    nearest = min(max(round(math.degrees(wanted), _DIGITS), first), last)
+    below = np.arange(nearest, first - _ROUNDING, -_STEP)
+    above = np.arange(nearest, last + _ROUNDING, _STEP)[1:]
+    angles = np.radians(np.concatenate([below, above]).round(_DIGITS))
+    ordered = angles[np.argsort(np.abs(angles - wanted), kind="stable")]
+    return np.asarray(np.clip(ordered, interval.lower, interval.upper))

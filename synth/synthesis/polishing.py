@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import threading
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from synth.errors import SolverError
@@ -52,6 +52,11 @@ class Polishing:
     def found(self) -> bool:
         """Whether a shape reaches every target."""
         return any(design.verification.found for design in self.designs)
+
+    @property
+    def by_squares(self) -> Polishing:
+        """The same, with the same lists, by the sum of the squares of the misses instead of the worst one."""
+        return replace(self, task=replace(self.task, objective=Objective.LEAST_SQUARES))
 
     def polish(self, start: Start, *, near: bool = False) -> None:
         """Solve from one start; where something is in the way, take the planes before it anew.

@@ -97,6 +97,8 @@ class Search:
         self.polishing.polish(start)
         if self._led_astray(start) and self.polishing.keep(start.arm, start.joints).verification.possible:
             self.polishing.polish(start, near=True)
+        if self._lost(start):
+            self.polishing.by_squares.polish(start, near=True)
         self.starts += 1
         self._since_found += self.polishing.found
 
@@ -140,6 +142,15 @@ class Search:
         """Whether polishing may have led away from a start that is nearly an answer, by long first steps."""
         sum_of_squares = self._task.objective is Objective.LEAST_SQUARES
         return sum_of_squares and not self.polishing.found and self._may_be_better(start)
+
+    def _lost(self, start: Start) -> bool:
+        """Whether a start passes through all targets, whatever limits it breaks, and its polishing lost them.
+
+        Where every target can be met the objectives agree, and the sum of squares is the smoother one.
+        """
+        if self.polishing.found or self._task.objective is Objective.LEAST_SQUARES:
+            return False
+        return bool((start.misses(self._task) <= self._task.tolerances).all())
 
     def _start_points(self, *, quick: bool) -> Iterator[Start]:
         candidates = start_points(self._task, self._seed, quick=quick, watch=self._watch)

@@ -1,12 +1,15 @@
 """Random tasks over the whole input space, each answer judged by a second implementation, tests/oracle.py.
 
     python tests/benchmarks/fuzz.py [--tasks 300] [--first 0] [--workers 2] [--limit 300] [--save DIR]
+                                    [--answers DIR] [--prove S]
 
 Other robots, free rigid links, joint ranges, places of the base, obstacles, floors, topologies, objectives,
 1 to 30 targets, tolerances of 0.01 to 20 mm. Planted tasks can be done, impossible ones cannot by
 construction, of wild ones nobody knows. Each is solved in a process of its own, which is ended when it takes
 far too long; what is at fault is printed with its task as YAML, or put into files by --save. One task again:
---numbers N.
+--numbers N. With --answers what was solved is kept, and a second run only judges it anew; --prove looks for
+a lower bound of each task, too, and holds it against every shape that is known. What cannot be drawn or
+judged is a fault of its own kind ("generator", "judge").
 """
 
 from __future__ import annotations
@@ -30,7 +33,8 @@ from ruamel.yaml import YAML
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from fuzz_judge import Fault, judge
+from fuzz_faults import Fault
+from fuzz_judge import judge
 from fuzz_tasks import FuzzTask, fuzz_task
 
 from synth.export import solution_to_json
@@ -41,34 +45,73 @@ from synth.task import parse_task
 _DRAWING = 600.0  # s: more than drawing and judging a task take
 
 
-def answered(number: int, seed: int) -> dict:
-    """Draw, solve and judge one task; return all that is counted, as plain values."""
-    fuzz = fuzz_task(number)
-    outcome = {"number": number, "kind": fuzz.kind, "why": fuzz.why, "tags": fuzz.tags, "faults": []}
-    outcome |= {"targets": len(fuzz.content["targets"]), "yaml": as_yaml(fuzz), "status": "exception"}
+def answered(number: int, seed: int, kept: Path | None, proof: float) -> dict:
+    """Draw, solve and judge one task; return all that is counted, as plain values.
+
+    What cannot be drawn or judged is a fault of these files, of a kind of its own, and no answer's.
+    """
+    outcome = _nothing_known(number)
+    try:
+        fuzz = fuzz_task(number)
+    except Exception:  # noqa: BLE001 - the generator's own fault, told as such
+        return outcome | {"status": "not drawn", "faults": [_raised("generator")]}
+    outcome |= {"kind": fuzz.kind, "why": fuzz.why, "tags": fuzz.tags}
+    outcome |= {"targets": len(fuzz.content["targets"]), "yaml": as_yaml(fuzz)}
     began, spent = time.perf_counter(), time.process_time()
     try:
-        with warnings.catch_warnings(record=True) as warned:
-            warnings.simplefilter("always")
-            task = parse_task(fuzz.content)
-            solution = solve(task, seed=seed)
-            outcome["time"] = time.perf_counter() - began
-            outcome["processor"] = time.process_time() - spent
-            content, text = solution_to_json(solution), solution_text(solution)
-        json.dumps(content, allow_nan=False)
+        answer = _answer_of(fuzz, seed, kept)
     except Exception:  # noqa: BLE001 - whatever is raised is what is looked for
-        told = traceback.format_exc().strip().splitlines()
-        place = next((line.strip() for line in reversed(told) if "/synth/" in line), "")
-        outcome["faults"].append(Fault("exception", f"{told[-1]} ({place})"))
         took = {"time": time.perf_counter() - began, "processor": time.process_time() - spent}
-        return outcome | took
-    outcome["status"], outcome["message"] = content["status"], content["message"]
-    told = Counter(
+        return outcome | took | {"status": "exception", "faults": [_raised("exception")]}
+    content = answer["content"]
+    outcome |= {key: answer[key] for key in ("time", "processor")}
+    outcome |= {"status": content["status"], "message": content["message"]}
+    try:
+        faults = judge(fuzz, parse_task(fuzz.content), content, answer["text"], proof)
+    except Exception:  # noqa: BLE001 - the judge's own fault, told as such
+        faults = [_raised("judge")]
+    return outcome | {"faults": [Fault("warning", words) for words in answer["warnings"]] + faults}
+
+
+def _nothing_known(number: int) -> dict:
+    outcome = {"number": number, "kind": "?", "why": "", "tags": [], "targets": 0, "yaml": ""}
+    return outcome | {"time": math.nan, "processor": math.nan, "faults": []}
+
+
+def _raised(kind: str) -> Fault:
+    """Return the exception that is handled as a fault, with the line of ours that it is from."""
+    told = traceback.format_exc().strip().splitlines()
+    ours = ("/synth/", "/tests/")
+    place = next((line.strip() for line in reversed(told) if any(part in line for part in ours)), "")
+    return Fault(kind, f"{told[-1]} ({place})")
+
+
+def _answer_of(fuzz: FuzzTask, seed: int, kept: Path | None) -> dict:
+    """Return the JSON and the text of a task's solution, what was warned of, and the time, s.
+
+    Args:
+        fuzz: The task.
+        seed: Of the search.
+        kept: Where answers are kept; one that is there already is not sought again.
+    """
+    file = None if kept is None else kept / f"answer-{fuzz.number}-{seed}.json"
+    if file is not None and file.exists():
+        return json.loads(file.read_text())
+    began, spent = time.perf_counter(), time.process_time()
+    with warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("always")
+        solution = solve(parse_task(fuzz.content), seed=seed)
+        took = {"time": time.perf_counter() - began, "processor": time.process_time() - spent}
+        content, text = solution_to_json(solution), solution_text(solution)
+    counts = Counter(
         f"{each.category.__name__}: {each.message} ({Path(each.filename).name})" for each in warned
     )
-    outcome["faults"] += [Fault("warning", f"{words}, {count} times") for words, count in told.items()]
-    outcome["faults"] += judge(fuzz, task, content, text)
-    return outcome
+    told = [f"{words}, {count} times" for words, count in counts.items()]
+    answer = {"content": content, "text": text, "warnings": told} | took
+    written = json.dumps(answer, allow_nan=False)
+    if file is not None:
+        file.write_text(written)
+    return answer
 
 
 def as_yaml(fuzz: FuzzTask) -> str:
@@ -77,18 +120,17 @@ def as_yaml(fuzz: FuzzTask) -> str:
     return stream.getvalue()
 
 
-def _send(pipe, number: int, seed: int) -> None:
-    pipe.send(answered(number, seed))
+def _send(pipe, *arguments) -> None:
+    pipe.send(answered(*arguments))
 
 
-def outcome_of(number: int, seed: int, limit: float) -> dict:
+def outcome_of(number: int, seed: int, limit: float, kept: Path | None, proof: float) -> dict:
     """Answer one task in a process of its own, and end it if it takes too long or dies."""
     mine, its = multiprocessing.Pipe(duplex=False)
-    process = multiprocessing.get_context("fork").Process(target=_send, args=(its, number, seed), daemon=True)
+    arguments = (its, number, seed, kept, proof)
+    process = multiprocessing.get_context("fork").Process(target=_send, args=arguments, daemon=True)
     process.start()
     its.close()
-    lost = {"number": number, "kind": "?", "why": "", "tags": [], "targets": 0, "yaml": ""}
-    lost |= {"time": limit, "processor": math.nan}
     try:
         if mine.poll(limit + _DRAWING):
             return mine.recv()
@@ -96,10 +138,10 @@ def outcome_of(number: int, seed: int, limit: float) -> dict:
         fault = Fault("time", f"no answer after {limit + _DRAWING:.0f} s")
     except EOFError:
         process.join()
-        fault = Fault("exception", f"the process died: exit code {process.exitcode}")
+        fault = Fault("died", f"the process died: exit code {process.exitcode}")
     finally:
         process.join(10.0)
-    return lost | {"status": "none", "faults": [fault]}
+    return _nothing_known(number) | {"status": "none", "faults": [fault]}
 
 
 def report(outcomes: list[dict], limit: float) -> None:
@@ -114,8 +156,8 @@ def report(outcomes: list[dict], limit: float) -> None:
         times = [outcome["processor"] for outcome in mine if not math.isnan(outcome["processor"])]
         cells = "  ".join(f"{counts[status]:>17}" for status in STATUSES)
         print(
-            f"{kind:<12} {len(mine):>5}  {cells}  {np.median(times):>5.2f} s "
-            f"{np.percentile(times, 95):>5.1f} s {max(times):>5.1f} s"
+            f"{kind:<12} {len(mine):>5}  {cells}  {np.median(times or [math.nan]):>5.2f} s "
+            f"{np.percentile(times or [math.nan], 95):>5.1f} s {max(times, default=math.nan):>5.1f} s"
         )
     faults = [(outcome, Fault(*fault)) for outcome in outcomes for fault in outcome["faults"]]
     by_kind = Counter(fault.kind for _, fault in faults)
@@ -133,7 +175,7 @@ def report(outcomes: list[dict], limit: float) -> None:
         print(f"  {fault.kind}: task {outcome['number']} ({outcome['kind']}; {tags}): {fault.sentence}")
 
 
-STATUSES = ("found", "best_effort", "proven_impossible", "limit", "failed", "exception")
+STATUSES = ("found", "best_effort", "proven_impossible", "limit", "failed", "exception", "not drawn", "none")
 
 
 def main() -> None:
@@ -147,11 +189,25 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--limit", type=float, default=300.0, metavar="S")
     parser.add_argument("--save", type=Path, metavar="DIR", help="for the tasks at fault, and outcomes.json")
+    parser.add_argument(
+        "--answers", type=Path, metavar="DIR", help="kept there, and only judged where they are"
+    )
+    parser.add_argument(
+        "--prove", type=float, default=0.0, metavar="S", help="look for bounds for so long, too"
+    )
     arguments = parser.parse_args()
+    if arguments.answers is not None:
+        arguments.answers.mkdir(parents=True, exist_ok=True)
     numbers = arguments.numbers or range(arguments.first, arguments.first + arguments.tasks)
     outcomes = []
     with ThreadPoolExecutor(arguments.workers) as executor:
-        answer = partial(outcome_of, seed=arguments.seed, limit=arguments.limit)
+        answer = partial(
+            outcome_of,
+            seed=arguments.seed,
+            limit=arguments.limit,
+            kept=arguments.answers,
+            proof=arguments.prove,
+        )
         jobs = [executor.submit(answer, number) for number in numbers]
         for done, job in enumerate(as_completed(jobs), start=1):
             outcome = job.result()

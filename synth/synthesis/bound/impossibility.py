@@ -98,7 +98,7 @@ def _in_the_way(task: Task) -> list[str]:
         depths = rod_radius - solid.distance(task.positions_in_base)
         reasons += [
             f"{task.targets[index].name} is in {obstacle.name}: "
-            f"the end effector would be {at_least(depths[index])} inside"
+            f"there the end effector would be {at_least(depths[index])} inside"
             for index in np.flatnonzero(depths > task.tolerances + _ROUNDING).tolist()
         ]
     return reasons

@@ -69,6 +69,11 @@ class Start:
     joints: FloatArray
     cost: float = 0.0
 
+    def misses(self, task: Task) -> FloatArray:
+        """Return the misses of the targets at its joint angles, shape (n,), m."""
+        reached = self.arm.forward_kinematics(self.joints[:, 0], self.joints[:, 1])
+        return np.asarray(np.linalg.norm(reached - task.table.positions, axis=1))
+
 
 def start_points(
     task: Task, seed: int, *, quick: bool = False, watch: Watch | None = None
