@@ -1,5 +1,6 @@
 """The array type of the project, read-only copies for frozen values, and how such values compare."""
 
+from collections.abc import Mapping
 from dataclasses import fields
 from math import isnan
 from typing import Any, TypeVar
@@ -48,6 +49,8 @@ def _equal(one: Any, other: Any) -> bool:
         return one.shape == other.shape and bool(np.array_equal(one, other, equal_nan=one.dtype.kind == "f"))
     if isinstance(one, tuple | list) and one.__class__ is other.__class__:
         return len(one) == len(other) and all(map(_equal, one, other))
+    if isinstance(one, Mapping) and isinstance(other, Mapping):
+        return one.keys() == other.keys() and all(_equal(value, other[key]) for key, value in one.items())
     return bool(one == other)
 
 
@@ -58,4 +61,6 @@ def _key(value: Any) -> Any:
         return value.shape, tuple(None if isnan(number) else number for number in few)
     if isinstance(value, tuple | list):
         return tuple(map(_key, value[:_HASHED]))
+    if isinstance(value, Mapping):
+        return frozenset(value)
     return value

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from synth.arrays import compared_by_value
 from synth.checks import refuse_unless
 from synth.errors import SynthError, in_a_line
 from synth.export.markers import markers_csv
@@ -26,7 +27,8 @@ _MOST_INDENTED = 1000  # targets in a file that is laid out for the eye
 SOLUTION_FILES = ("solution.json", "guide.pdf", "markers.csv")
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class Written:
     """What became of a set of files.
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.export.labels import Labels
 from synth.export.obstacle_outlines import draw_obstacle, ends_of
 from synth.guide import MARKERS
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from synth.arrays import FloatArray
     from synth.geometry import Solid
     from synth.guide import Guide, Placement
     from synth.synthesis import Design, Solution
@@ -38,7 +38,8 @@ _FAR, _NEAR_SIDE = 250.0, 60.0  # mm; what begins farther off is not drawn, and 
 _AXIS_LENGTH = 9.0  # mm of paper to either side of the markers, drawn of an axis
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class Scene:
     """What all views show, in the task frame and in mm.
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.errors import GeometryError
 from synth.geometry.closest import closest_angles
 from synth.geometry.distances import ArmDistances, realise, squared_distances
@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class SweptCircle:
     """Axis 2 and the circle of P5 about it, in the base frame (axis 1 is z, P1 the origin).
 

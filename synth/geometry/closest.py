@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.geometry.trigonometric import critical_angles, root_angles, sampling_angles
 
 if TYPE_CHECKING:
-    from synth.arrays import FloatArray
     from synth.geometry.circle import SweptCircle
 
 _DEGREE = 4  # of the stationarity condition, below
@@ -47,6 +47,7 @@ def closest_angles(circle: SweptCircle, rho: FloatArray, z: FloatArray) -> Float
     return np.concatenate([_closest_in_block(section, *part) for part in parts])
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class _Section:
     """The curve (rho(t), z(t)) of P5(t) = c + cos(t) s + sin(t) q, with s and q of length R.

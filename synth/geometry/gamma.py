@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.errors import GeometryError
 from synth.geometry._gamma_polynomials import workspace_polynomials
 from synth.geometry.distances import ArmDistances, cayley_menger
@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class WorkspaceSurface:
     """The quartic surface on which the end effector of a 2-DOF arm moves.
 

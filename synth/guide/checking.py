@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.guide.aim import best_aims, size, towards
 from synth.guide.hand import Hand
 from synth.guide.outlook import Outlook, after_stiffening, outlook
@@ -41,6 +41,7 @@ class Verdict(SentenceEnum):
     UNUSABLE = "unusable", "the measurement does not show where the arm stands"
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Correction:
     """A displacement of the link's end, as a person carries it out.
@@ -69,6 +70,7 @@ class Correction:
             object.__setattr__(self, name, frozen(getattr(self, name)))
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Check:
     """What is to be said of a link as it stands.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.checks import refuse_unless
 from synth.guide.posture import HoldPosture, hold_posture
 from synth.guide.sensitivity import ShapeTolerance, shape_tolerance
@@ -28,7 +28,8 @@ _VERTICAL = 1e-9  # of a direction's horizontal part: no heading below
 _LEAST_GAP = 0.010  # m; a point nearer to the link's end than this would only be mistaken for it
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class Placement:
     """Where everything stands while joint 1 is held at one angle. Task frame, m.
 
@@ -63,7 +64,8 @@ class Placement:
             object.__setattr__(self, name, frozen(getattr(self, name)))
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class Guide:
     """What a person needs to bend the link into its shape, and to tell whether it is right.
 

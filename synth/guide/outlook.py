@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.guide.hand import errors
 
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ _SAMPLES_AFTER = 1000  # joints are sought anew for each of these
 _STEPS = 4  # from joint angles a few degrees off
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Outlook:
     """Misses of the targets over N arms as they may be.

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.guide.outlook import Outlook, outlook
 
 if TYPE_CHECKING:
@@ -28,6 +28,7 @@ _ARRIVED = 1e-5  # m
 _EFFORT = 0.01
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Settings:
     """What to set.

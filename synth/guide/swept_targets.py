@@ -7,16 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.guide.outlook import Outlook
 
 if TYPE_CHECKING:
-    from synth.arrays import FloatArray
     from synth.measurement.calibration import Calibration
     from synth.task import Task
 
 _SAMPLES = 1000
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class SweptTarget:
     """What becomes of a target on the calibrated arm.

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.measurement.markers import Place
 from synth.measurement.standing_arm import FREEDOMS, StandingArm
 
@@ -32,6 +32,7 @@ _ANYWHERE = 10.0  # m and rad
 _NOT_SHOWN = 0.05  # a freedom left as uncertain as this, m or rad, was not measured
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class ArmFit:
     """The arm that fits the markers best, and how sure that is.

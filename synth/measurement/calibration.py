@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.geometry import Invariants, SweptCircle
 from synth.measurement.standing_arm import rotation_matrix
 from synth.robot import Interval, JointLimits
@@ -42,6 +42,7 @@ _SECONDS = 181  # angles of joint 2 at which the surface is looked at
 _FEWEST = 8
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Calibration:
     """The arm that fits a sweep best.

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.measurement.arm_fit import ArmFit, fit_arm, marker_positions
 from synth.measurement.markers import Place, Readings
 from synth.rounding import rounded_up
@@ -20,7 +21,6 @@ from synth.rounding import rounded_up
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from synth.arrays import FloatArray
     from synth.measurement.standing_arm import StandingArm
     from synth.robot import Robot
 
@@ -44,6 +44,7 @@ _FRAMES: dict[str, FloatArray] = {
 }
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Examination:
     """What is to be believed of readings.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.geometry import CategoryDistances, Invariants, SweptCircle
 from synth.measurement.link_fit import PAIRS, LinkFit, fit_link
 from synth.measurement.misprint import Misprint, find_misprint
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 SAMPLES = 4000
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Inspection:
     """A measured shape, looked at.

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.robot import ANYWHERE, Arm, BasePose, Interval
 from synth.robot.arc_chains import ArcChains
 from synth.robot.chain_steps import improved
@@ -15,7 +16,6 @@ from synth.rounding import told_apart
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from synth.arrays import FloatArray
     from synth.robot import Robot
     from synth.task.measured import MeasuredDistances
 
@@ -30,6 +30,7 @@ _LENGTH_SLACK = 1e-9
 _AIM = 1e-8
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class LinkFit:
     """A shape of the link for a measured pose.
@@ -88,6 +89,7 @@ def fit_link(
     return replace(_best(chains, _Bounds(robot, lower, upper), x, lower, upper), obstacle=obstacle)
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class _Bounds:
     """Bounds of d13, d14, d23, d24 as an aim of chains, the same for each."""

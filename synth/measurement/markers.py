@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -76,6 +76,7 @@ def sigma_of(mean_error: float) -> float:
     return mean_error / _MEAN_LENGTH
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Readings:
     """Where markers were seen, each in one posture of the arm.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.errors import GeometryError
 from synth.geometry import realise, squared_distances
 from synth.measurement.relaxation import nearest_gram
@@ -36,6 +36,7 @@ class Fit(SentenceEnum):
     IMPOSSIBLE = "impossible", "no points in any space have distances that keep the bounds"
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Nearest:
     """Points in space, and how far their distances are from the measured ones.

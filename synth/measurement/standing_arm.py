@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.robot import Kinematics, turned
 from synth.robot.closest import closest_joints
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from synth.arrays import FloatArray
     from synth.robot import Arm, JointLimits
 
 FREEDOMS = 11  # of `StandingArm.displaced`
@@ -46,6 +46,7 @@ def rotation_matrix(vector: FloatArray) -> FloatArray:
     return np.asarray(np.eye(3) + sine[..., None, None] * cross + versine[..., None, None] * (cross @ cross))
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class StandingArm:
     """Arms as they stand, in the frame of the measurement, m; leading axes "..." may be absent.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.geometry import (
     Category,
     CategoryDistances,
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from synth.robot.link import LinkShape
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class JointBranches:
     """The answers of the inverse kinematics: up to two branches for each point, the better first.
@@ -61,6 +62,7 @@ class JointBranches:
         return self.joints[self.miss <= tolerance]
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Arm:
     """A robot with its link stiffened in one shape. Points are in the task frame, in metres.

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Protocol, Self
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from synth.arrays import FloatArray
     from synth.robot.arc_chains import ArcChains
     from synth.robot.chain_limits import Projection
     from synth.robot.interval import Interval
@@ -46,6 +47,7 @@ class Aim(Protocol):
         ...
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Wish:
     """What is wanted of the chains at their aim: to be bent little or, with a present one, to change little.

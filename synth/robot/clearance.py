@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.geometry import least_values
 from synth.robot.turn import turned
 
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from synth.arrays import FloatArray
     from synth.geometry import Solid
     from synth.robot.arm import Arm
 
@@ -43,7 +43,8 @@ _ROUNDING = 2e-6  # m
 _Side = tuple[float, float, "float | FloatArray"]
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class ArmBody:
     """The room that an arm takes up, in its base frame.
 

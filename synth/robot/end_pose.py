@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.robot.interval import Interval
 from synth.robot.turn import into_turn, turned
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from synth.arrays import FloatArray
     from synth.robot.arc_chains import ArcChains
     from synth.robot.link import LinkShape
 
@@ -59,6 +59,7 @@ def pose_miss(
     return PoseMiss(float(np.linalg.norm(reached[0] - p)), angle, turn)
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class EndPoses:
     """Poses as aims of chains: positions p in units of the bend radius and directions u, shape (n, 3)."""

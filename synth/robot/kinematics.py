@@ -7,17 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.robot.turn import into_turn, turned
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from synth.arrays import FloatArray
     from synth.robot.interval import Interval
 
 _NEWTON_STEPS = 6
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Kinematics:
     """The two joints of shapes whose arrays broadcast: leading axes "..." may be absent.

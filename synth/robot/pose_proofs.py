@@ -32,6 +32,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.robot.interval import Interval
 from synth.robot.reach import LinkReach
 from synth.rounding import Unit, at_least, told_apart
@@ -41,7 +42,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from synth.arrays import FloatArray
     from synth.robot.hardware import MalleableLink
 
 _ROUNDING = 1e-7  # m and rad; a smaller excess proves nothing
@@ -99,6 +99,7 @@ def why_no_link(link: MalleableLink, position: ArrayLike, axis: ArrayLike) -> st
     return f"{_the_link(link)} ends {at_least(short)} away with axis 2 in this direction"
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class _Tangents:
     """The circle of tangents across axis 2, covered by intervals of the angle beta."""

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.robot.arc_chains import ArcChains
 from synth.robot.chain_steps import ARRIVED, Wish, eased, improved
 from synth.robot.end_pose import ANYWHERE, EndPoses, pose_miss, within
@@ -27,7 +28,6 @@ from synth.robot.turn import turned
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from synth.arrays import FloatArray
     from synth.robot.hardware import MalleableLink
     from synth.robot.interval import Interval
     from synth.robot.link import LinkShape
@@ -99,6 +99,7 @@ def links_to_poses(
     return [shape for rows in batches for shape in search.shapes(poses.take(rows))]
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class _Search:
     """Chains of few arcs, drawn at random, and the present shape."""

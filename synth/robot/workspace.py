@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.geometry import critical_angles, sampling_angles
 from synth.robot.hardware import JointLimits
 from synth.robot.interval import Interval
@@ -28,6 +28,7 @@ _GAUSS = np.polynomial.legendre.leggauss(16)
 _COARSEST = 1.0  # rad; seven cells a turn still close up
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class SurfaceMesh:
     """Triangles on a workspace surface.
@@ -57,6 +58,7 @@ class SurfaceMesh:
         return np.asarray(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=-1))
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Workspace:
     """The surface that P5 sweeps within joint limits. Points are in the task frame, in metres.

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.robot import Kinematics
 from synth.synthesis.postures import Aims, Postures
 
@@ -46,6 +46,7 @@ class Forgiveness:
     chance: float
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class HandErrors:
     """Where a hand may leave the link's end.

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.checks import refuse_unless
 from synth.robot import ArmBody, turned
 from synth.synthesis.margins import joint_shortfalls
@@ -41,6 +41,7 @@ _STEP = 0.02  # rad, between postures that are looked at when a way is straighte
 _NO_WAY, _CRAMPED = 1e6, 1e3
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Motion:
     """How the arm gets from one target to the next.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.robot import ArcChains, Arm, BasePose, Kinematics, LinkShape, chain_end, chain_points
 
 if TYPE_CHECKING:
@@ -25,6 +25,7 @@ ARM_LENGTH = 0.5
 ARCS = 4  # equal arcs of a link: eight curvatures and a length for the five numbers of an end pose
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Population:
     """Shapes of a robot, each a row of unknowns; leading axes "..." are free.

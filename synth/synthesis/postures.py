@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.robot import into_turn
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from synth.arrays import FloatArray
     from synth.robot import JointLimits, Kinematics
 
 _NEWTON_STEPS = 2
@@ -30,6 +30,7 @@ _TINY = 1e-12
 _NEAR_AXIS = 0.02
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Aims:
     """Targets as joint 1 sees them, and the limits of the joints.
@@ -53,6 +54,7 @@ class Aims:
         return np.arctan2(self.positions[:, 1], self.positions[:, 0])
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Postures:
     """P5 of N shapes beside n targets each.

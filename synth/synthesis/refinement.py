@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.synthesis.category_offsets import category_offsets, category_slopes
 from synth.synthesis.population import Population, free_directions, into_limits
 from synth.synthesis.postures import Aims, Postures
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from synth.arrays import FloatArray
     from synth.task import Task
 
 _ITERATIONS = {Objective.LEAST_SQUARES: 20, Objective.MINIMAX: 24}
@@ -52,6 +52,7 @@ _ENOUGH, _EXACT = 20, 1e-13
 _TINY = 1e-30  # m^2
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Refined:
     """Shapes at the bottoms of their valleys, or nearly.

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.synthesis.category_offsets import category_offsets
 from synth.synthesis.exact_starts import exact_designs, nearest_to_designs
 from synth.synthesis.many_targets import as_it_is_and_turned
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from synth.arrays import FloatArray
     from synth.robot import Arm, Robot
     from synth.synthesis.refinement import Refined
     from synth.task import Task
@@ -54,7 +54,8 @@ _SETTLED, _SETTLED_PART = 1e-5, 0.02
 _MOST_STARTS = {Objective.LEAST_SQUARES: 12, Objective.MINIMAX: 24}
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class Start:
     """A shape to polish.
 

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.robot import ArmBody, turned
 from synth.synthesis.watch import never
 
@@ -44,6 +44,7 @@ _NEAR = 0.06
 _NEAR_ITSELF = 0.03
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Separation:
     """A plane between a piece of the arm and an obstacle, or another piece.

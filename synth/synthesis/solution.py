@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.errors import SynthError
 from synth.sentences import SentenceEnum
 from synth.synthesis.room import clear_of_everything
@@ -52,7 +52,8 @@ class NotFoundError(SynthError):
         self.solution = solution
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class Design:
     """A shape of the robot and what the independent check says of it.
 
@@ -69,7 +70,8 @@ class Design:
     figures: Figures | None = None
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class TargetResult:
     """What becomes of one target. Positions in the task frame, m.
 
@@ -119,7 +121,8 @@ class Release:
     task: Task
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class Solution:
     """The result of a synthesis.
 

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.synthesis.population import ARCS, Population, into_limits
 from synth.synthesis.refinement import Refined, cleared, level, refine
 from synth.synthesis.separation import overlaps
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from synth.arrays import FloatArray
     from synth.task import Task
 
 # Rounds of the three steps; shapes kept; of these the parents, which miss differently; those of half of the
@@ -57,6 +57,7 @@ _OF_A_KIND = 4
 _LEVELLED = 48  # valleys whose least worst miss is looked for
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Valleys:
     """What is known of the valleys of a task.

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.checks import refuse_unless
 from synth.robot import Arm, ArmBody
 from synth.rounding import Unit, rounded_up, told_apart
@@ -39,7 +39,8 @@ class Violation:
     sentence: str
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class Verification:
     """What a shape really does for a task.
 

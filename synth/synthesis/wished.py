@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.robot import Interval
 from synth.synthesis.exact_starts import exact_designs, nearest_to_designs
 from synth.synthesis.forgiveness import misses_after_a_hand
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from synth.arrays import FloatArray
     from synth.robot import Arm, Robot
     from synth.task import Task
 
@@ -191,6 +191,7 @@ def _beside(task: Task, rng: np.random.Generator) -> Task:
     return replace(task, targets=replace(task.table, positions=task.table.positions + ways))
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class _Pool:
     """Shapes within the tolerances, the most wanted first.

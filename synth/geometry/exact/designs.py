@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.errors import GeometryError
 from synth.geometry.exact.conics import Conics
 from synth.geometry.exact.pencil import members_of_radius
@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 TOLERANCE = 1e-9
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class Designs:
     """The designs through each of many target sets, as arrays.
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.errors import GeometryError
 from synth.geometry.exact.designs import TOLERANCE
 from synth.geometry.invariants import Invariants
@@ -20,7 +21,6 @@ from synth.geometry.invariants import Invariants
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from synth.arrays import FloatArray
 
 # Heights that differ by less, as a fraction of the targets' extent, do not tell the centre of a sphere.
 _LEVEL = 1e-9
@@ -28,7 +28,8 @@ _LEVEL = 1e-9
 _ROUNDING = 1e-12
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class PlaneFamily:
     """All arms with parallel axes (SCARA) through targets in one plane across axis 1.
 
@@ -70,7 +71,8 @@ class PlaneFamily:
         return Invariants(a, 0.0, self.z, 0.0, radius)
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class SphereFamily:
     """All arms whose axes meet through targets on one sphere about a point of axis 1.
 

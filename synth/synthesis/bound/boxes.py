@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from synth.arrays import FloatArray
 
 # Charts of the half sphere u_y >= 0, after the faces of a cube: the middle's coordinate axis and sign, the
 # coordinate axis towards which alpha turns, the one towards which beta turns, and the least alpha.
@@ -25,6 +26,7 @@ _CHARTS = (
 )
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Boxes:
     """Boxes of the parameters (rho, h, alpha, beta, psi) of the link's end.

@@ -8,18 +8,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.synthesis.bound.limits import SLACK
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from synth.arrays import FloatArray
 
 CELLS = 64  # of the circle of P5, and of psi, at first: a bit each
 _PARTS = 4  # into which a cell is cut
 _CUTS = 2  # times at most
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Cells:
     """Pairs of a target and a cell of the circle of P5 in some boxes, sorted by box and target.
@@ -52,6 +53,7 @@ class Cells:
         return np.flatnonzero(np.concatenate([[True], key[1:] != key[:-1]]))
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Grid:
     """The coarsest cells, of phi as of psi, and which of them go together.

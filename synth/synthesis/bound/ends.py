@@ -7,18 +7,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.robot import ANYWHERE, ArcChains, turned
 from synth.robot.chain_steps import improved
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from synth.arrays import FloatArray
     from synth.robot import Interval, LinkShape, MalleableLink
 
 _STEPS = 40
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class LinkEnd:
     """How a link is to end, up to a turn about axis 1.
@@ -50,6 +51,7 @@ class LinkEnd:
         return [chains.shape(x[row, :-1]) for row in np.argsort(left, kind="stable")]
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class _Ends:
     """Ends as aims of chains: positions in units of the bend radius, (n, 3), and frames, (n, 3, 3)."""

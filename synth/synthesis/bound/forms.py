@@ -11,16 +11,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from synth.arrays import FloatArray
     from synth.synthesis.bound.boxes import Boxes
     from synth.synthesis.bound.cells import Cells
 
 _TINY = 1e-300
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Forms:
     """Affine lower bounds of the distance of each candidate's target from its cell, in units of the box.
@@ -66,6 +68,7 @@ class Forms:
         return np.asarray(np.maximum(over_box.max(axis=0), self.floor))
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Circle:
     """Where P5 is to reach: the circle of P5 about axis 2, and the targets.

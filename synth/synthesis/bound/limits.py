@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.robot import Interval, LinkReach
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from synth.arrays import FloatArray
     from synth.robot import MalleableLink
     from synth.synthesis.bound.boxes import Boxes
     from synth.task import Task
@@ -27,6 +27,7 @@ _SMALL_TURN = 0.15  # rad
 _DIRECTIONS = 3  # tried as that of the straight part of the link
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class ReachTable:
     """Upper bounds of the margin of a link's reach, from its values on a grid of the half-plane.
@@ -67,6 +68,7 @@ class ReachTable:
         return np.asarray(self.margins[i, j] + moved)
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Limits:
     """What a task and its robot rule out, box by box."""

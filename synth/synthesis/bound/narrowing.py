@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.synthesis.bound.cells import CELLS, Cells, Grid, wrapped
 from synth.synthesis.bound.contraction import hull_of_cells
 from synth.synthesis.bound.limits import SLACK
@@ -15,13 +16,13 @@ from synth.synthesis.bound.limits import SLACK
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from synth.arrays import FloatArray
     from synth.synthesis.bound.boxes import Boxes
     from synth.synthesis.bound.forms import Circle, Forms
 
 _THIN = 1e-12  # rad: half of psi's width where there is none
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Candidates:
     """Boxes in which every target may be near, and where.
@@ -49,6 +50,7 @@ class Candidates:
         )
 
 
+@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Narrowing:
     """What keeps cells, and then boxes, from being near all targets.

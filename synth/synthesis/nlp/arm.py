@@ -32,7 +32,7 @@ _GENERAL_DISTANCE = 2e-3
 _GENERAL_ANGLE = math.radians(0.2)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Piece:
     """A convex piece of the arm at joint 1 = 0: its ends, and what is within how far of their chord, m."""
 

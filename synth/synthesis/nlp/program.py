@@ -33,6 +33,7 @@ from typing import TYPE_CHECKING
 import casadi as ca
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.synthesis.nlp.arm import SymbolicArm
 from synth.synthesis.nlp.blocks import Constraints, Unknowns
 from synth.synthesis.nlp.ipopt import Ipopt
@@ -42,7 +43,6 @@ from synth.task import Objective
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from synth.arrays import FloatArray
     from synth.robot import Arm
     from synth.synthesis.nlp.structure import Structure
     from synth.synthesis.separation import Separation
@@ -61,7 +61,8 @@ _OVERLAP_UNIT = 1e-3
 _FINEST_UNIT = 1.0
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class NlpAnswer:
     """Where the solver stopped. A claim only: the verification decides what it is worth.
 

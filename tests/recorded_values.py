@@ -1,0 +1,145 @@
+"""One value of each frozen dataclass of the package, as small runs of all of it make them."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import math
+import pkgutil
+from contextlib import contextmanager
+
+import numpy as np
+from exact_targets import random_values, targets_of
+from planted import ROBOT, planted_task
+from planted_obstacles import planted_with_obstacles
+from sampled_shapes import noisy_task
+from standing import BARS, HOLD, SIGMA, seen
+
+import synth
+from synth.errors import Mistake
+from synth.export import write_files
+from synth.geometry import Box, Capsule, Sphere, planes_through, spheres_through
+from synth.guide import make_guide
+from synth.guide.checking import check_arm
+from synth.guide.forgiving import most_forgiving
+from synth.guide.settings import best_settings
+from synth.guide.swept_targets import swept_targets
+from synth.measurement import StandingArm, examine, inspect
+from synth.measurement.calibration import calibrate
+from synth.robot import Arm, LinkShape, Workspace, link_to_pose, why_no_link
+from synth.synthesis import Release, solve, verify
+from synth.synthesis.bound import prove
+from synth.synthesis.relaxed_limits import limits_of
+from synth.synthesis.watch import Watch
+from synth.task.measured import Precision
+from synth.task.measured_file import parse_measurements
+
+# These hold symbolic expressions, and a figure: of neither can anybody say whether it is equal to another.
+WITHOUT_A_VALUE = {"Derivation", "_Piece", "Page"}
+
+
+def frozen_dataclasses():
+    """Return those of all modules, private ones among them."""
+    names = [module.name for module in pkgutil.walk_packages(synth.__path__, "synth.")]
+    modules = [importlib.import_module(name) for name in names if not name.endswith("__main__")]
+    found = {
+        value
+        for module in modules
+        for value in vars(module).values()
+        if isinstance(value, type) and dataclasses.is_dataclass(value) and value.__module__ == module.__name__
+    }
+    return {cls for cls in found if cls.__dataclass_params__.frozen and cls.__name__ not in WITHOUT_A_VALUE}
+
+
+@contextmanager
+def recording(classes):
+    """Yield a dictionary that gets the first value of each class that is made."""
+    made, makers = {}, {cls: cls.__init__ for cls in classes}
+
+    def watched(cls, maker):
+        def make(self, *arguments, **options):
+            maker(self, *arguments, **options)
+            made.setdefault(cls, self)
+
+        return make
+
+    for cls, maker in makers.items():
+        cls.__init__ = watched(cls, maker)
+    try:
+        yield made
+    finally:
+        for cls, maker in makers.items():
+            cls.__init__ = maker
+
+
+def recorded_values(folder):
+    """Return a value of each frozen dataclass, by its class; files are written into a folder."""
+    with recording(frozen_dataclasses()) as made:
+        _solved(folder)
+        _proven()
+        _stood_somewhere_else()
+        _measured()
+        _exact()
+        _small()
+    return made
+
+
+def _solved(folder):
+    task, _, _ = planted_with_obstacles("window", 2)
+    solution = solve(task)
+    (make_guide(task, solution.best), solution.targets)
+    write_files(solution, folder)
+    most_forgiving(task, solution.designs[:1])
+    limit = next(iter(limits_of(task)))
+    Release(limit.name, 0.1, 0.1, limit.sentence(0.1), solution.best, limit.relaxed(0.1))
+
+
+def _proven():
+    ends, task = [], noisy_task(5)
+
+    def improve(end):
+        ends.append(end.links(ROBOT.link, 4, 8, np.random.default_rng(0)))
+        return 0.01
+
+    watch = Watch(stop=lambda: bool(ends))  # until there was an end to be tried
+    prove(task, 0.01, np.zeros(len(task.targets)), tightest=1e-3, watch=watch, improve=improve)
+
+
+def _stood_somewhere_else():
+    task, arm = planted_task(5, 3)
+    solution = solve(task, alternatives=0)
+    wanted = StandingArm.of(solution.robot, HOLD)
+    true = wanted.moved(np.array([0.006, -0.005, 0.004, 0.03, 0.02, -0.04]))
+    fit = examine(seen(true, BARS), wanted, ROBOT, SIGMA, base_calibrated=True).fit
+    check_arm(task, solution.designs, fit)
+    best_settings(task, ROBOT, fit, solution.best.verification.joints)
+    joints = np.random.default_rng(0).uniform([0.5, 1.5], [6.0, 5.0], (60, 2))
+    swept_targets(calibrate(true.forward(joints), joints, wanted, SIGMA), task)
+    verify(task, Arm(ROBOT, LinkShape([[0.0, 0.0]], [5.0]), arm.d35, arm.d45))
+
+
+def _measured():
+    distances = "{d13: 500, d14: 544, d15: 562, d23: 451, d24: 494, d25: 520}"
+    text = f"synth: 1\nlength_unit: mm\nrobot: malleable-2dof\nrounding: 1\ndistances: {distances}\n"
+    inspect(parse_measurements(text.replace("544", "5440"))[0], samples=20)
+    Precision.from_sigma(1e-3)
+
+
+def _exact():
+    rng = np.random.default_rng(0)
+    values = random_values(rng, 1)
+    synth.geometry.designs_through_five(targets_of(values, 5, rng))
+    values[:, 1] = 0.0
+    planes_through(targets_of(values, 5, rng)[0])
+    values[:, [0, 1]] = 0.0, 0.7
+    spheres_through(targets_of(values, 5, rng)[0])
+
+
+def _small():
+    _, arm = planted_task(5, 3)
+    Workspace.within_limits(arm).mesh(math.radians(30.0))
+    rotation, position = arm.shape.end_frame()
+    link_to_pose(ROBOT.link, position, rotation[:, 0], current=arm.shape)
+    why_no_link(ROBOT.link, position, rotation[:, 0])
+    arm.circle.distance([[0.3, 0.2, 0.1]])
+    (Sphere([0, 0, 1], 1), Capsule([[0, 0, 0], [1, 1, 1]], 1), Box([0, 0, 0], [1, 1, 1]), Mistake("wrong"))
