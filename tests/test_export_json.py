@@ -106,6 +106,11 @@ def test_the_misses_follow_from_the_arcs_and_angles_alone(offset):
     assert content["status"] == ("found" if offset < 2e-3 else "best_effort")
 
 
+def test_what_becomes_of_the_targets_is_found_out_once():
+    solution = make_solution()
+    assert solution.targets is solution.targets
+
+
 def test_guide_distances_and_centreline_follow_from_the_arcs():
     content = read_back(SOLUTION)
     position, frame = end_frame(content)

@@ -9,6 +9,7 @@ from click.testing import CliRunner
 import synth
 from synth import (
     PRESETS,
+    Arm,
     BasePose,
     Box,
     Capsule,
@@ -72,6 +73,9 @@ WRONG = [
     (lambda: Obstacle("", 5), ["name", "solid"]),
     (lambda: LinkShape([[0, NAN]], [-1]), ["curvatures[0][1]", "lengths[0]"]),
     (lambda: LinkShape([[0, 0]], [1, 2]), ["lengths"]),
+    (lambda: Arm(ROBOT, LinkShape([[0, 0]], [0.6]), NAN, -0.46), ["d35", "d45"]),
+    (lambda: Arm(ROBOT, LinkShape([[0, 0]], [0.6]), math.inf, 0), ["d35", "d45"]),
+    (lambda: Arm("malleable-2dof", [[0, 0]], "0.455", None, 5), ["robot", "shape", "d35", "d45", "base"]),
     (
         lambda: synth.solve(5, seed=-1, alternatives=0.5, time_limit=NAN, warm_start=3),
         ["task", "seed", "warm_start", "alternatives", "time_limit"],
@@ -103,8 +107,8 @@ def test_words_become_enumerations_and_numbers_intervals():
 @pytest.mark.parametrize(
     ("robot", "position", "words"),
     [
-        (ROBOT, [5e-4, 1e-4, 2e-4], "within 0.548 mm of P1"),
-        (ROBOT, [500.0, 100.0, 200.0], "In mm the farthest would be 547.7 mm away"),
+        (ROBOT, [5e-4, 1e-4, 2e-4], "within 0.5478 mm of P1"),
+        (ROBOT, [500.0, 100.0, 200.0], "In mm the farthest would be 547.8 mm away"),
         (Robot("r", 58.0, LINK, 0.049, 0.02, RIGID), [0.5, 0.1, 0.2], "too short beside d12"),
         (Robot("r", 0.058, MalleableLink(700, 110), 0.049, 0.02, RIGID), [5, 0, 0], "too long beside d12"),
     ],
@@ -139,6 +143,7 @@ def test_a_rigid_link_of_no_length_and_one_of_no_radius_are_solved():
         lambda x: Capsule([[x, 0, 0], [1, 1, 1]], 1),
         lambda x: Obstacle("a", Sphere([x, 0, 0], 1)),
         lambda x: LinkShape([[x, 0]], [1]),
+        lambda x: Arm(ROBOT, LinkShape([[x, 0]], [1]), 0.455, 0.46),
         lambda x: Task("a", ROBOT, [PointTarget("a", [x, 0, 0])]),
     ],
 )

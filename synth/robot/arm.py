@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.checks import Checks
 from synth.geometry import (
     Category,
     CategoryDistances,
@@ -20,16 +21,15 @@ from synth.geometry import (
 )
 from synth.robot.base import BasePose
 from synth.robot.closest import closest_joints
+from synth.robot.hardware import Robot
 from synth.robot.kinematics import Kinematics
+from synth.robot.link import LinkShape
 from synth.robot.turn import into_turn
 
 _SAME_BRANCH = 1e-5  # rad; branches nearer than this are one, met twice
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-
-    from synth.robot.hardware import Robot
-    from synth.robot.link import LinkShape
 
 
 @compared_by_value
@@ -80,6 +80,15 @@ class Arm:
     d35: float
     d45: float
     base: BasePose = field(default_factory=BasePose)
+
+    def __post_init__(self) -> None:
+        checks = Checks(self)
+        checks.is_a("robot", Robot)
+        checks.is_a("shape", LinkShape)
+        checks.number("d35", above=0.0)
+        checks.number("d45", above=0.0)
+        checks.is_a("base", BasePose)
+        checks.refuse()
 
     @property
     def base_joint(self) -> FloatArray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -190,7 +191,7 @@ class Solution:
         """
         return self.best.arm
 
-    @property
+    @cached_property
     def targets(self) -> tuple[TargetResult, ...]:
         """What becomes of each target in the best shape.
 
