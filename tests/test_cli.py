@@ -12,23 +12,15 @@ from pathlib import Path
 import click
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from command import invoked, program
 from planted import out_of_reach, planted_task
-from test_task_reading import WRONG
+from wrong_tasks import WRONG
 
-from synth.cli import main
 from synth.cli.terminal import as_shown
 
 OUT_OF_REACH = Path(__file__).parents[1] / "problems" / "out-of-reach" / "task.yaml"
 
 HEADER = "synth: 1\nlength_unit: m\nrobot: malleable-2dof\n"
-
-
-def run(*arguments, cwd=None):
-    return subprocess.run(
-        [sys.executable, "-m", "synth", *map(str, arguments)],
-        capture_output=True, text=True, check=False, cwd=cwd, timeout=120,
-    )  # fmt: skip
 
 
 def written(path, task, **keys):
@@ -39,6 +31,17 @@ def written(path, task, **keys):
     extra = "".join(f"{key}: {value}\n" for key, value in keys.items())
     path.write_text(f"{HEADER}{extra}targets: {json.dumps(targets)}\n")
     return path
+
+
+def noisy_content(count):
+    """A task without an exact answer, of which the least worst miss is asked."""
+    task, _ = planted_task(5, count)
+    noise = np.random.default_rng(0).normal(scale=0.03, size=(count, 3))
+    targets = [
+        {"position": (target.position + shift).tolist()}
+        for target, shift in zip(task.targets, noise, strict=True)
+    ]
+    return f"{HEADER}floor: null\nobjective: minimax\ntargets: {json.dumps(targets)}\n"
 
 
 @pytest.fixture
@@ -59,7 +62,7 @@ def test_help_needs_no_heavy_library():
 
 
 def test_a_found_task_exits_with_0_and_writes_its_files(easy, tmp_path):
-    answer = run("solve", easy, "-o", tmp_path / "out")
+    answer = program("solve", easy, "-o", tmp_path / "out")
     assert answer.returncode == 0
     assert "every target is within its tolerance" in answer.stdout
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
@@ -69,7 +72,7 @@ def test_a_found_task_exits_with_0_and_writes_its_files(easy, tmp_path):
 
 
 def test_json_is_all_that_stands_on_stdout_and_stderr_is_silent_in_a_pipe(easy):
-    answer = run("solve", easy, "--json", "--seed", "3")
+    answer = program("solve", easy, "--json", "--seed", "3")
     solution = json.loads(answer.stdout)
     assert solution["schema"] == "synth.solution/2"
     assert solution["seed"] == 3
@@ -77,13 +80,15 @@ def test_json_is_all_that_stands_on_stdout_and_stderr_is_silent_in_a_pipe(easy):
 
 
 def test_the_same_task_and_seed_give_the_same_answer(easy):
-    first, second = (json.loads(run("solve", easy, "--json").stdout) for _ in range(2))
+    first, second = (json.loads(program("solve", easy, "--json").stdout) for _ in range(2))
     del first["time"], second["time"]
     assert first == second
 
 
 def test_a_task_out_of_reach_exits_with_1_and_still_writes_its_best_effort(tmp_path):
-    answer = run("solve", written(tmp_path / "far.yaml", out_of_reach(2)), "-o", tmp_path / "out", "--json")
+    answer = program(
+        "solve", written(tmp_path / "far.yaml", out_of_reach(2)), "-o", tmp_path / "out", "--json"
+    )
     assert answer.returncode == 1
     solution = json.loads(answer.stdout)
     assert solution["status"] == "proven_impossible"
@@ -93,16 +98,16 @@ def test_a_task_out_of_reach_exits_with_1_and_still_writes_its_best_effort(tmp_p
 
 
 def test_another_shape_is_given_on_request_and_one_too_many_is_refused(easy, tmp_path):
-    best = json.loads(run("solve", easy, "--json").stdout)
+    best = json.loads(program("solve", easy, "--json").stdout)
     count = 1 + len(best["alternatives"])
     assert count > 1
-    answer = run("solve", easy, "--json", "--shape", 2, "-o", tmp_path / "out")
+    answer = program("solve", easy, "--json", "--shape", 2, "-o", tmp_path / "out")
     assert answer.returncode == 0
     second = json.loads(answer.stdout)
     assert second["shape"] == 2
     assert second["link"]["arcs"] == best["alternatives"][0]["link"]["arcs"]
     assert json.loads((tmp_path / "out" / "solution.json").read_text())["guide"] == second["guide"]
-    answer = run("solve", easy, "--shape", count + 1)
+    answer = program("solve", easy, "--shape", count + 1)
     assert answer.returncode == 2
     assert answer.stdout == ""
     assert re.fullmatch(rf"there is no shape {count + 1} to show: there are \d+ distinct .*\n", answer.stderr)
@@ -147,11 +152,11 @@ def test_signs_that_an_encoding_lacks_give_way_to_others_that_tell_found_from_mi
 
 
 def test_why_says_what_would_release_a_task_that_is_not_met():
-    answer = run("solve", OUT_OF_REACH, "--why")
+    answer = program("solve", OUT_OF_REACH, "--why")
     assert answer.returncode == 1
     assert re.search(r"• a link 12\d\.\d mm longer \(up to 82\d\.\d mm\) would do", answer.stdout)
     assert re.search(r"• the base moved by 12\d\.\d mm \(x .*, y .*, z .* mm\) would do", answer.stdout)
-    answer = run("solve", OUT_OF_REACH, "--why", "--json")
+    answer = program("solve", OUT_OF_REACH, "--why", "--json")
     first = json.loads(answer.stdout)["releases"][0]
     assert first["limit"] == "link length"
     assert 0.119 < first["amount"] < 0.125
@@ -160,7 +165,7 @@ def test_why_says_what_would_release_a_task_that_is_not_met():
 def test_wrong_input_exits_with_2_and_names_every_mistake(tmp_path):
     task = tmp_path / "wrong.yaml"
     task.write_text(HEADER + "topologie: any\ntargets:\n  - {position: [1, 2], tolerance: -1}\n")
-    answer = run("solve", task, "-o", tmp_path / "out")
+    answer = program("solve", task, "-o", tmp_path / "out")
     assert answer.returncode == 2
     assert answer.stdout == ""
     for words in (
@@ -176,7 +181,7 @@ def test_wrong_input_exits_with_2_and_names_every_mistake(tmp_path):
 def test_each_kind_of_malformed_file_exits_with_2_and_names_its_key(tmp_path, content, key, line, words):
     task = tmp_path / "task.yaml"
     task.write_bytes(content if isinstance(content, bytes) else content.encode())
-    answer = CliRunner().invoke(main, ["solve", str(task), "--json"])
+    answer = invoked("solve", task, "--json")
     assert isinstance(answer.exception, SystemExit), answer.exception
     assert answer.exit_code == 2
     assert answer.stdout == ""
@@ -189,45 +194,33 @@ def test_each_kind_of_malformed_file_exits_with_2_and_names_its_key(tmp_path, co
     "arguments", [["solve"], ["solve", "x.yaml", "--seed", "-1"], ["slove"], ["solve", "--time-limit"]]
 )
 def test_wrong_usage_exits_with_2(arguments):
-    answer = run(*arguments)
+    answer = program(*arguments)
     assert answer.returncode == 2
     assert "Traceback" not in answer.stderr
 
 
 def test_an_output_directory_that_cannot_be_exits_with_2_before_the_search(easy, tmp_path):
     (tmp_path / "file").write_text("")
-    answer = run("solve", easy, "-o", tmp_path / "file" / "out")
+    answer = program("solve", easy, "-o", tmp_path / "file" / "out")
     assert answer.returncode == 2
     assert "Traceback" not in answer.stderr
 
 
 def test_a_time_limit_keeps_the_best_so_far(tmp_path):
-    task, _ = planted_task(5, 20)
-    noise = np.random.default_rng(0).normal(scale=0.03, size=(20, 3))
-    targets = [
-        {"position": (target.position + shift).tolist()}
-        for target, shift in zip(task.targets, noise, strict=True)
-    ]
     file = tmp_path / "noisy.yaml"
     # The worst miss of so many is far more work than these seconds allow.
-    file.write_text(f"{HEADER}floor: null\nobjective: minimax\ntargets: {json.dumps(targets)}\n")
-    answer = run("solve", file, "--json", "--time-limit", "0.001")
+    file.write_text(noisy_content(20))
+    answer = program("solve", file, "--json", "--time-limit", "0.001")
     solution = json.loads(answer.stdout)
     assert answer.returncode == 1
     assert solution["status"] == "limit"
-    unlimited = json.loads(run("solve", file, "--json").stdout)
+    unlimited = json.loads(program("solve", file, "--json").stdout)
     assert unlimited["status"] == "best_effort"
     assert unlimited["starts"] > solution["starts"]
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows sends no SIGINT to one process")
 def test_ctrl_c_keeps_the_best_so_far(tmp_path):
-    task, _ = planted_task(5, 40)
-    noise = np.random.default_rng(0).normal(scale=0.03, size=(40, 3))
-    targets = [
-        {"position": (target.position + shift).tolist()}
-        for target, shift in zip(task.targets, noise, strict=True)
-    ]
     # The command waits for what is written into a pipe: when it has read that, its search is about to begin.
     pipe = tmp_path / "noisy.yaml"
     os.mkfifo(pipe)
@@ -235,7 +228,7 @@ def test_ctrl_c_keeps_the_best_so_far(tmp_path):
         [sys.executable, "-m", "synth", "solve", str(pipe), "--json"],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     ) as process:  # fmt: skip
-        pipe.write_text(f"{HEADER}floor: null\nobjective: minimax\ntargets: {json.dumps(targets)}\n")
+        pipe.write_text(noisy_content(40))
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=60)
     assert "Traceback" not in err
@@ -246,6 +239,7 @@ def test_ctrl_c_keeps_the_best_so_far(tmp_path):
 
 
 def test_the_module_and_the_command_are_the_same_program():
-    command = Path(sys.executable).with_name("synth")
-    answer = subprocess.run([command, "--version"], capture_output=True, text=True, check=True)
-    assert answer.stdout == run("--version").stdout
+    ways = [Path(sys.executable).with_name("synth")], [sys.executable, "-m", "synth"]
+    for way in ways:
+        answer = subprocess.run([*way, "--version"], capture_output=True, text=True, check=True)
+        assert answer.stdout == program("--version").stdout

@@ -5,12 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from command import invoked
 from planted import ROBOT, planted_task
 from solutions import solution_document, write_markers, write_solution
 from standing import BARS, HOLD, SIGMA, seen
 
-from synth.cli import main
 from synth.errors import InputError
 from synth.measurement import StandingArm
 from synth.synthesis import solve, verify
@@ -24,10 +23,6 @@ def scene(tmp_path_factory):
     solution = solve(task)
     folder = tmp_path_factory.mktemp("loop")
     return task, solution, folder, write_solution(folder / "solution.json", task, solution.designs)
-
-
-def run(*arguments):
-    return CliRunner().invoke(main, [str(each) for each in arguments])
 
 
 def markers(scene, arm, names=BARS):
@@ -76,14 +71,14 @@ def test_what_is_no_solution_is_refused(tmp_path, content):
 
 
 def test_a_link_in_its_place_is_locked(scene):
-    result = run("check", markers(scene, wanted(scene)), scene[3], "--base-calibrated")
+    result = invoked("check", markers(scene, wanted(scene)), scene[3], "--base-calibrated")
     assert result.exit_code == 0, result.output
     assert "lock it" in result.output
 
 
 def test_the_json_of_a_check_is_the_contract(scene, tmp_path):
     off = wanted(scene).moved(np.array([0.006, -0.005, 0.004, 0.03, 0.02, -0.04]))
-    result = run(
+    result = invoked(
         "check",
         markers(scene, off),
         scene[3],
@@ -120,10 +115,10 @@ def test_the_json_of_a_check_is_the_contract(scene, tmp_path):
 def test_markers_that_are_not_believed_end_with_2(scene):
     path = markers(scene, wanted(scene))
     path.write_text(path.read_text().replace("x_mm,y_mm,z_mm", "x_m,y_m,z_m"))
-    assert run("check", path, scene[3]).exit_code == 2
+    assert invoked("check", path, scene[3]).exit_code == 2
     readings = seen(wanted(scene), BARS)
     path = write_markers(scene[2] / "cm.csv", replace(readings, positions=10.0 * readings.positions))
-    result = run("check", path, scene[3], "--json")
+    result = invoked("check", path, scene[3], "--json")
     assert result.exit_code == 2
     assert json.loads(result.stdout)["status"] == "unusable"
     assert "the unit is wrong" in json.loads(result.stdout)["message"]
@@ -143,7 +138,7 @@ def test_calibration_from_a_file(scene):
     table = np.hstack([points, np.degrees(joints)])
     path = scene[2] / "points.csv"
     np.savetxt(path, table, delimiter=",", header="x_mm,y_mm,z_mm,joint1_deg,joint2_deg", comments="")
-    result = run("calibrate", path, scene[3], "--json")
+    result = invoked("calibrate", path, scene[3], "--json")
     assert result.exit_code == 0, result.output
     content = json.loads(result.stdout)
     assert content["schema"] == "synth.calibration/1"
@@ -153,6 +148,6 @@ def test_calibration_from_a_file(scene):
     assert content["distances"]["34"] == pytest.approx(ROBOT.d34)
     assert len(content["targets"]) == 3
     np.savetxt(path, table[table[:, 4] < 90.0][:, :3], delimiter=",", header="x_mm,y_mm,z_mm", comments="")
-    result = run("calibrate", path, scene[3])
+    result = invoked("calibrate", path, scene[3])
     assert result.exit_code == 1
     assert "does not determine the surface" in result.output

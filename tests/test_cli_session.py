@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from command import program
 
 from synth.cli.session import Session
 
@@ -17,18 +18,10 @@ ONE_TARGET = Path(__file__).parents[1] / "problems" / "one-target" / "task.yaml"
 OUT_OF_REACH = ONE_TARGET.parents[1] / "out-of-reach" / "task.yaml"
 NAMES = {"solution.json", "guide.pdf", "markers.csv"}
 
-# A program that changes one thing inside, and is the command otherwise.
-MAIN = "\nfrom synth.cli import main\nmain(prog_name='synth')\n"
+# Run before the command: changes one thing inside.
 SHEET_FAILS = "import synth.export.files as files\ndef fail(*_): raise {error}\nfiles.draw_sheet = fail"
 # Signals come exactly where they hurt, so that no test waits or hopes.
 SIGNAL = "import os, signal\ndef press(): os.kill(os.getpid(), signal.{signal})\n"
-
-
-def program(*arguments, before="", **options):
-    options = {"capture_output": True, "text": True, **options}
-    return subprocess.run(
-        [sys.executable, "-c", before + MAIN, *map(str, arguments)], check=False, timeout=300, **options
-    )
 
 
 def status(directory):

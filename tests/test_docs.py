@@ -27,13 +27,23 @@ def test_the_python_of_a_page_runs_from_top_to_bottom(page, monkeypatch):
         exec(compile(block, page.name, "exec"), names)  # noqa: S102 - our own text
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
-def test_the_help_texts_of_a_page_are_those_of_the_program(page):
-    for block in blocks(page, "console"):
-        command, _, shown = block.partition("\n")
-        arguments = command.removeprefix("$ synth ").split()
+def shown(page):
+    """Return what a page shows of the program: each line of a command with what it answers."""
+    return [tuple(block.split("\n", 1)) for block in blocks(page, "console")]
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if shown(page)], ids=lambda page: page.stem)
+def test_what_a_page_shows_of_the_program_is_what_it_answers(page):
+    for line, told in shown(page):
+        arguments = line.removeprefix("$ synth ").split()
         answer = CliRunner().invoke(main, arguments, prog_name="synth", terminal_width=100)
-        assert shown == answer.output, f"{page.name}: $ synth {' '.join(arguments)}"
+        assert told == answer.output, f"{page.name}: {line}"
+
+
+@pytest.mark.parametrize("command", ["", *(f"{name} " for name in main.commands)])
+def test_every_command_has_its_help_on_a_page(command):
+    lines = [line for page in PAGES for line, _ in shown(page)]
+    assert lines.count(f"$ synth {command}--help") == 1
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)

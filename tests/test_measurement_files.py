@@ -8,19 +8,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from command import invoked
 
-from synth.cli import main
 from synth.errors import InputError
 from synth.task.measured_file import parse_measurements
 
 ROOT = Path(__file__).parents[1]
 HEADER = "synth: 1\nlength_unit: mm\nrobot: malleable-2dof\n"
 GOOD = "rounding: 1\ndistances: {d13: 500, d14: 544, d15: 562, d23: 451, d24: 494, d25: 520}\n"
-
-
-def run(*arguments):
-    return CliRunner().invoke(main, ["inspect", *map(str, arguments)])
 
 
 @pytest.fixture
@@ -117,10 +112,10 @@ def test_a_rigid_link_that_the_robot_leaves_open_must_be_measured():
 
 
 def test_a_realisable_shape_exits_with_0_and_prints_text_or_json(config):
-    answer = run(config(GOOD), "--samples", "50")
+    answer = invoked("inspect", config(GOOD), "--samples", "50")
     assert answer.exit_code == 0
     assert "config: realisable" in answer.stdout
-    data = json.loads(run(config(GOOD), "--samples", "50", "--json").stdout)
+    data = json.loads(invoked("inspect", config(GOOD), "--samples", "50", "--json").stdout)
     assert data["schema"] == "synth.inspection/1"
     assert data["realisable"] is True
     assert data["configurations"][0]["link"]["found"] is True
@@ -128,27 +123,27 @@ def test_a_realisable_shape_exits_with_0_and_prints_text_or_json(config):
 
 
 def test_an_impossible_number_exits_with_1_and_is_named(config):
-    answer = run(config(GOOD.replace("520", "5200")), "--samples", "50")
+    answer = invoked("inspect", config(GOOD.replace("520", "5200")), "--samples", "50")
     assert answer.exit_code == 1
     assert "d25 = 5200 mm is impossible" in answer.stdout
     assert "it is 520 mm" in answer.stdout
 
 
 def test_wrong_input_exits_with_2(config, tmp_path):
-    answer = run(config("distances: {d13: 1}\n"))
+    answer = invoked("inspect", config("distances: {d13: 1}\n"))
     assert answer.exit_code == 2
     assert "config.yaml:4: distances.d14: is missing" in answer.stderr
     assert answer.stdout == ""
-    assert run(tmp_path / "none.yaml").exit_code == 2
+    assert invoked("inspect", tmp_path / "none.yaml").exit_code == 2
     (tmp_path / "file").write_text("")
-    assert run(config(GOOD), "-o", tmp_path / "file" / "out").exit_code == 2
+    assert invoked("inspect", config(GOOD), "-o", tmp_path / "file" / "out").exit_code == 2
 
 
 def test_files_are_written_and_are_the_same_each_time(config, tmp_path):
     path = config(f"name: a/b $x$\n{GOOD}")
     contents = []
     for directory in ("one", "two"):
-        assert run(path, "--samples", "50", "-o", tmp_path / directory).exit_code == 0
+        assert invoked("inspect", path, "--samples", "50", "-o", tmp_path / directory).exit_code == 0
         files = sorted((tmp_path / directory).iterdir())
         assert [file.name for file in files] == ["inspect.json", "workspace-1.pdf"]
         contents.append([file.read_bytes() for file in files])
@@ -171,7 +166,7 @@ def test_help_needs_no_heavy_library():
 def test_the_table_of_the_published_configurations_is_what_the_program_prints():
     page = (ROOT / "docs" / "published-configurations.md").read_text()
     (table,) = re.findall(r"<!-- table -->\n(.*?)<!-- end of table -->", page, re.DOTALL)
-    answer = run(ROOT / "problems" / "clark2020.yaml", "--markdown")
+    answer = invoked("inspect", ROOT / "problems" / "clark2020.yaml", "--markdown")
     assert answer.exit_code == 1  # (b) holds a misprint, (l) fits no points
     assert answer.stdout == table
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from command import invoked
 
 import synth
 from synth import (
@@ -27,7 +27,6 @@ from synth import (
     Task,
     Topology,
 )
-from synth.cli import main
 from synth.task.measured_file import parse_measurements
 
 ROBOT = PRESETS["malleable-2dof"]
@@ -174,6 +173,6 @@ def test_markers_that_are_not_those_of_the_hardware_are_refused_with_the_number(
 
 
 def test_no_number_of_seconds_is_nan():
-    result = CliRunner().invoke(main, ["solve", "task.yaml", "--time-limit", "nan"])
+    result = invoked("solve", "task.yaml", "--time-limit", "nan")
     assert result.exit_code == 2
     assert "not a number" in result.output

@@ -35,13 +35,12 @@ def test_shapes_wished_for_are_found_and_have_margins(seed):
     assert Margins.of(arm, joints, check.clearances).shortfall(Margins.wanted(ROBOT)) == 0.0
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_the_best_shape_is_off_its_limits_where_the_first_one_leans_on_them(seed):
+def test_the_best_shape_is_off_its_limits_where_the_first_one_leans_on_them():
     task = tables()
-    quick, best = solve(task, seed=seed, alternatives=0).best.figures, solve(task, seed=seed).best.figures
-    assert best.shortfall == 0.0
-    assert best.ways_missing == 0
-    assert quick.shortfall > 0.0 or best.largest_swing <= quick.largest_swing
+    quick = [solve(task, seed=seed, alternatives=0).best.figures for seed in range(3)]
+    best = [solve(task, seed=seed).best.figures for seed in range(3)]
+    assert [(each.shortfall, each.ways_missing) for each in best] == [(0.0, 0)] * 3
+    assert max(each.shortfall for each in quick) > 0.5
 
 
 def test_the_tolerance_is_used():
