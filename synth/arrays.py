@@ -31,17 +31,20 @@ def compared_by_value(cls: type[_T]) -> type[_T]:
         if other.__class__ is not self.__class__:
             return NotImplemented
         return self is other or all(
-            _equal(getattr(self, field.name), getattr(other, field.name))
-            for field in fields(self)  # type: ignore[arg-type]  # a dataclass
+            _equal(getattr(self, name), getattr(other, name)) for name in _compared(self)
         )
 
     def hashed(self: object) -> int:
-        names = [field.name for field in fields(self)]  # type: ignore[arg-type]
-        return hash((cls, *(_key(getattr(self, name)) for name in names)))
+        return hash((cls, *(_key(getattr(self, name)) for name in _compared(self))))
 
     cls.__eq__ = equal  # type: ignore[method-assign]
     cls.__hash__ = hashed  # type: ignore[method-assign]
     return cls
+
+
+def _compared(value: object) -> list[str]:
+    """Return the names of the fields that count: all but those declared with `compare=False`."""
+    return [field.name for field in fields(value) if field.compare]  # type: ignore[arg-type]  # a dataclass
 
 
 def _equal(one: Any, other: Any) -> bool:

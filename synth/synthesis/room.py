@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import FloatArray, compared_by_value
 from synth.robot import Arm, ArmBody
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from synth.arrays import FloatArray
     from synth.geometry import Solid
     from synth.task import Task
 
@@ -87,7 +87,8 @@ def _rod_from_tube(body: ArmBody, theta2: FloatArray) -> FloatArray:
     return bounds
 
 
-@dataclass(frozen=True)
+@compared_by_value
+@dataclass(frozen=True, eq=False)
 class Room:
     """What the arm keeps clear of, as lower bounds of distances, m; see `ArmBody`.
 

@@ -14,7 +14,7 @@ better one that is so narrow that all of them missed it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -71,7 +71,7 @@ class Valleys:
     """
 
     task: Task
-    watch: Watch
+    watch: Watch = field(compare=False)
     best: Refined
     fresh: FloatArray
     drawn: int
