@@ -182,3 +182,15 @@ def test_a_library_lives_in_the_rooms_where_it_may(library, rooms):
 def test_no_room_is_called_what_says_nothing():
     for file in FILES:
         assert Path(file).stem not in {"utils", "helpers", "common", "misc"}
+
+
+def test_no_test_imports_another():
+    for file in sorted(Path(__file__).parent.glob("*.py")):
+        modules = {module for node in ast.walk(ast.parse(file.read_text())) for module in _imported(node)}
+        assert not {module for module in modules if module.startswith("test_")}, file.name
+
+
+def _imported(node):
+    if isinstance(node, ast.Import):
+        return [alias.name for alias in node.names]
+    return [node.module or ""] if isinstance(node, ast.ImportFrom) else []
