@@ -84,7 +84,7 @@ def test_where_all_is_met_no_other_start_is_looked_for(monkeypatch):
     def never(*_, **__):
         raise AssertionError
 
-    monkeypatch.setattr(proving, "starts", never)
+    monkeypatch.setattr(proving, "start_points", never)
     task, _ = planted_task(4, 3)
     found = Found(task, solve(task, alternatives=0).robot)
     bound = found.certificate()
@@ -93,7 +93,7 @@ def test_where_all_is_met_no_other_start_is_looked_for(monkeypatch):
 
 
 def test_without_a_shape_all_that_is_known_is_the_bound(monkeypatch):
-    monkeypatch.setattr(proving, "starts", lambda *_, **__: iter(()))
+    monkeypatch.setattr(proving, "start_points", lambda *_, **__: iter(()))
     found = Found(noisy_task(2))
     left = iter(range(5))
     bound = found.certificate(Watch(stop=lambda: next(left, None) is None))
