@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from planted import planted_task
 
 from synth.errors import SynthError
 from synth.geometry import Box, Sphere
@@ -501,3 +502,10 @@ def test_the_headline_of_a_shape_without_a_way_says_so():
     design = replace(SOLUTION.best, ways=ways)
     headline = summary_text(replace(SOLUTION, designs=(design,))).splitlines()[0]
     assert headline.endswith(": every target is reached, but no way was found from a to b")
+
+
+def test_the_guide_of_a_shape_is_made_once():
+    task, arm = planted_task(2, 3)
+    design = Design(arm, verify(task, arm))
+    assert make_guide(task, design) is make_guide(task, design)
+    assert make_guide(replace(task, name="other"), design) is not make_guide(task, design)

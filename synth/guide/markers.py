@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -129,18 +130,27 @@ def make_guide(task: Task, design: Design) -> Guide:
     """
     refuse_unless("task", task, Task)
     refuse_unless("design", design, Design)
-    arm, met = design.arm, design.verification.found
+    return _guide(task, design)
+
+
+@lru_cache(maxsize=8)
+def _guide(task: Task, design: Design) -> Guide:
+    """Return the guide: text, JSON and sheet of a run ask for the same one."""
+    arm, check, figures = design.arm, design.verification, design.figures
     stations, posture = _stations(arm.shape.length), hold_posture(task, arm)
+    forgiveness = None
+    if check.found:
+        forgiveness = figures.forgiveness if figures else hand_forgiveness(task, arm, check.joints)
     return Guide(
         posture=posture,
         hold=place(arm, stations, posture.joint1),
         stations=stations,
         arm=arm,
         cut=None if task.robot.rigid_link.is_fixed else (arm.d35, arm.d45),
-        met=met,
+        met=check.found,
         tolerance=shape_tolerance(task, design),
-        forgiveness=hand_forgiveness(task, arm) if met else None,
-        ways=motions(task, design) if met and len(task.targets) <= MOST_MOTIONS else (),
+        forgiveness=forgiveness,
+        ways=motions(task, design) if check.found and len(task.targets) <= MOST_MOTIONS else (),
     )
 
 
