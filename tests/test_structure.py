@@ -43,7 +43,7 @@ ROOMS = {
     "geometry.exact": {"geometry"},
     "geometry": set(),
 }
-MOST_MODULES, MOST_LINES, MEAN_LINES = 14, 250, 150
+MOST_MODULES, MOST_LINES, MEAN_LINES, MOST_CODE = 14, 250, 150, 120
 LIBRARIES = {
     "casadi": {
         "synthesis/nlp/arm.py",
@@ -163,6 +163,25 @@ def test_files_are_short():
     lines = {file: len((PACKAGE / file).read_text().splitlines()) for file in FILES}
     assert {file: count for file, count in lines.items() if count > MOST_LINES} == {}
     assert sum(lines.values()) / len(lines) <= MEAN_LINES
+
+
+def lines_of_code(node, text):
+    """Return how many lines a class has, those aside that only say what it does."""
+    told = {
+        number
+        for each in ast.walk(node)
+        if isinstance(each, ast.ClassDef | ast.FunctionDef) and ast.get_docstring(each)
+        for number in range(each.body[0].lineno, each.body[0].end_lineno + 1)
+    }
+    lines = enumerate(text.splitlines()[node.lineno - 1 : node.end_lineno], node.lineno)
+    return sum(bool(line.strip()) and not line.strip().startswith("#") for n, line in lines if n not in told)
+
+
+@pytest.mark.parametrize("file", MODULES)
+def test_classes_are_small(file):
+    text = (PACKAGE / file).read_text()
+    classes = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.ClassDef)]
+    assert {node.name for node in classes if lines_of_code(node, text) > MOST_CODE} == set()
 
 
 @pytest.mark.parametrize("library", LIBRARIES)
