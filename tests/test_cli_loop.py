@@ -38,7 +38,7 @@ def test_a_solution_is_read_as_it_was(scene):
     read, arms = load_shapes(file)
     assert read.name == task.name
     assert read.robot == task.robot
-    assert np.allclose(read.positions, task.positions_in_base)
+    assert np.allclose(read.positions_in_base, task.positions_in_base)
     assert len(arms) == len(solution.designs)
     assert verify(read, arms[0]).found
 
