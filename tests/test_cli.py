@@ -209,7 +209,7 @@ def test_an_output_directory_that_cannot_be_exits_with_2_before_the_search(easy,
 def test_a_time_limit_keeps_the_best_so_far(tmp_path):
     file = tmp_path / "noisy.yaml"
     # The worst miss of so many is far more work than these seconds allow.
-    file.write_text(noisy_content(20))
+    file.write_text(noisy_content(95))
     answer = program("solve", file, "--json", "--time-limit", "2")
     solution = json.loads(answer.stdout)
     assert answer.returncode == 1
