@@ -76,7 +76,7 @@ def test_the_slope_is_that_of_the_squared_misses_with_the_joints_at_their_best(r
             theta2 = np.clip(theta2 + step, limits.second.lower, limits.second.upper)
         return Postures.at(aims, shapes.kinematics, theta2), np.abs(step[:, 0]) < 1e-10
 
-    for target in noisy(1).positions:
+    for target in noisy(1).positions_in_base:
         aims = TargetsSeen(target[None], limits)
         here, arrived = led(aims, shapes, Postures.nearest(aims, shapes.kinematics).theta2)
         _, slope = Residuals(shapes, here, limits.second).normal_equations(np.ones((30, 1)))
@@ -89,7 +89,7 @@ def test_the_slope_is_that_of_the_squared_misses_with_the_joints_at_their_best(r
             slopes = change(more.squared, less.squared)[sure, 0]
             assert np.allclose(2.0 * by_unknowns[sure, unknown], slopes, rtol=1e-4, atol=1e-6)
             compared += np.count_nonzero(sure)
-    assert compared > 0.7 * 30 * len(noisy(1).positions) * shapes.unknowns.shape[1]
+    assert compared > 0.7 * 30 * len(noisy(1).positions_in_base) * shapes.unknowns.shape[1]
 
 
 @pytest.mark.parametrize("topology", [Topology.SPHERICAL, Topology.PUMA, Topology.SCARA, Topology.ANY])
