@@ -10,6 +10,7 @@ from planted_obstacles import SCENES, planted_with_obstacles
 from synth.geometry import Box
 from synth.synthesis import motions, verify
 from synth.synthesis.wanted.design import Design
+from synth.synthesis.wanted.ways import routed
 from synth.task import Obstacle
 
 
@@ -105,3 +106,16 @@ def test_a_way_that_the_floor_closes_is_closed_for_good():
     assert not way.found
     (way,) = motions(replace(task, floor=None), Design(arm, verify(replace(task, floor=None), arm, joints)))
     assert way.found
+
+
+def test_after_the_time_no_way_around_is_looked_for_and_straight_ones_stay():
+    around = 0
+    for scene, seed in itertools.product(SCENES, (2, 3)):
+        task, arm, joints = planted_with_obstacles(scene, seed)
+        design = Design(arm, verify(task, arm, joints))
+        in_time, in_haste = routed(task, design)[0], routed(task, design, lambda: True)[0]
+        assert len(in_time) == len(in_haste)
+        for way in in_haste:
+            assert len(way.joints) in {0, 2}
+        around += sum(one.found and not other.found for one, other in zip(in_time, in_haste, strict=True))
+    assert around > 0

@@ -107,6 +107,6 @@ class Polishing:
         with self.watch.on("verifying"):
             design = Design(arm, verify(self.task, arm, joints, keep=stay))
             if stay and design.verification.found:
-                design = judged(self.task, design)
+                design = judged(self.task, design, self.watch.is_up)
         (self.designs if design.verification.possible else self.blocked).append(design)
         return design

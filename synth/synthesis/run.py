@@ -22,7 +22,7 @@ from synth.synthesis.solution import Solution, Status
 from synth.synthesis.wanted import Design, best_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from synth.synthesis.bound import Bound
     from synth.task import Task
@@ -147,9 +147,16 @@ class Run:
             self.search.starts,
             self.watch.timing(),
             self._bound_for(designs),
-            notes=(*self.notes, *filter(None, [whole.note])),
+            notes=(*self.notes, *filter(None, [whole.note, self._ways_note(designs)])),
             breakdown="".join(traceback.format_exception(self.broke_off)) if self.broke_off else "",
         )
+
+    def _ways_note(self, designs: Sequence[Design]) -> str:
+        """Return that ways may be missing for lack of time alone; nothing if none is missing."""
+        missing = designs and any(not way.found for way in designs[0].ways)
+        if not (missing and self.watch.interrupted):
+            return ""
+        return "the time was up before all ways from target to target had been looked for"
 
     def _why_broken(self) -> tuple[str, ...]:
         return () if self.broke_off is None else (f"the search broke off: {in_a_line(self.broke_off)}",)

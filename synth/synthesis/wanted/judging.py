@@ -30,13 +30,14 @@ def judged(task: Task, design: Design, is_up: Callable[[], bool] = never) -> Des
     Args:
         task: The task.
         design: The design, verified for the task.
-        is_up: Asked whether to leave out the ways of one that misses a target: nobody is told of them.
+        is_up: Asked whether to leave out the ways of one that misses a target, of which nobody is told, and
+            to look for no more ways around obstacles.
     """
     if design.figures is not None:
         return design
     ways: tuple[Motion, ...] = ()
     if len(task.targets) <= MOST_MOTIONS and (design.verification.found or not is_up()):
-        ways, joints = routed(task, design)
+        ways, joints = routed(task, design, is_up)
         if not np.array_equal(joints, design.verification.joints):
             design = replace(design, verification=verify(task, design.arm, joints, keep=True))
     arm, check = design.arm, design.verification

@@ -137,7 +137,7 @@ def best_of(task: Task, designs: Sequence[Design], is_up: Callable[[], bool] = n
         designs: The designs, verified for it.
         is_up: As for `judged`.
     """
-    found = [judged(task, design) for design in designs if design.verification.found]
+    found = [judged(task, design, is_up) for design in designs if design.verification.found]
     if found:
         figures = [design.figures for design in found if design.figures is not None]
         table = np.array([_row(each) for each in figures])

@@ -19,9 +19,10 @@ from synth.synthesis.wanted.margins import joint_shortfalls
 from synth.synthesis.wanted.motion import Motion, travel_of
 from synth.synthesis.wanted.shortest_path import shortest_path
 from synth.task import Task
+from synth.watch import never
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -58,10 +59,18 @@ def motions(task: Task, design: Design) -> tuple[Motion, ...]:
     return design.ways or routed(task, design)[0]
 
 
-def routed(task: Task, design: Design) -> tuple[tuple[Motion, ...], FloatArray]:
-    """Return the ways as `motions` does, and the joint angles that they take at each target, (n, 2), rad."""
+def routed(
+    task: Task, design: Design, is_up: Callable[[], bool] = never
+) -> tuple[tuple[Motion, ...], FloatArray]:
+    """Return the ways as `motions` does, and the joint angles that they take at each target, (n, 2), rad.
+
+    Args:
+        task: The task.
+        design: The arm.
+        is_up: Asked often whether to look for no more ways around obstacles.
+    """
     postures = joints_reaching(task, design.arm, design.verification)
-    ways = _Surroundings(task, design).ways(postures)
+    ways = _Surroundings(task, design, is_up).ways(postures)
     cramped = [_CRAMPED * joint_shortfalls(task.robot, joints) for joints in postures]
     # To each posture of a target the least cost so far, rad, and which postures are taken on the way there.
     best: list[tuple[float, tuple[int, ...]]]
@@ -89,7 +98,8 @@ def _cost(way: FloatArray) -> float:
 class _Surroundings:
     """What an arm may bump into as its joints move."""
 
-    def __init__(self, task: Task, design: Design) -> None:
+    def __init__(self, task: Task, design: Design, is_up: Callable[[], bool]) -> None:
+        self._is_up = is_up
         self._body = ArmBody(design.arm)
         self._limits = task.robot.joint_limits
         self._solids: list[Solid] = list(seen_by(task, design.arm))
@@ -214,6 +224,9 @@ class _Surroundings:
         least = np.minimum(least, rod[..., 2].min(axis=-1) - body.rod_radius - self._floor)
         tube, rod = turned(tube, theta1[..., None]), turned(rod, theta1[..., None])
         for solid in self._solids:
+            if self._is_up():
+                shape = np.broadcast_shapes(theta1.shape, theta2.shape)
+                return np.full(shape, -np.inf)  # nothing is known to be clear
             from_tube = solid.distance(tube).min(axis=-1) - body.tube_radius
             least = np.minimum(
                 least, np.minimum(from_tube, solid.distance(rod).min(axis=-1) - body.rod_radius)
