@@ -99,7 +99,8 @@ def _searched(
     its range, where no swing can be large: calm shapes are too rare to be met by chance.
     """
     pool = _bred(task, narrow, known, _LED, rng, stop)
-    for calmer in _calmer(narrow):
+    tight = float(task.tolerances.min()) < _TIGHT
+    for calmer in () if tight else _calmer(narrow):
         if stop() or not len(pool.table) or is_content(pool.table[0]):
             break
         pool = pool.joined(_bred(task, calmer, (), _LED_CALMER, rng, stop))
