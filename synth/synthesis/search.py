@@ -117,7 +117,7 @@ class Search:
             if design.verification.found:
                 found += 1
                 wanted += leaves_no_wish(design.figures)  # by its ways, not only by where they end
-            if self._alternatives in (wanted, found if many else 0):
+            if (found if many else wanted) == self._alternatives:
                 break
         return found > 0
 
