@@ -23,8 +23,8 @@ from synth.guide.instructions import (
 from synth.guide.markers import SPACING, _stations, place
 from synth.guide.posture import hold_posture
 from synth.guide.sensitivity import ShapeTolerance, shape_tolerance, tilt_rate
-from synth.guide.text import help_told
-from synth.robot import PRESETS, Arm, ArmBody, BasePose, Interval, JointLimits, LinkShape
+from synth.guide.text import clearance_told, help_told
+from synth.robot import MOST_CLEARANCE, PRESETS, Arm, ArmBody, BasePose, Interval, JointLimits, LinkShape
 from synth.robot.closest_joints import closest_joints
 from synth.robot.kinematics import Kinematics
 from synth.synthesis import Bound, Design, Release, Solution, Status, Timing, showing, verify
@@ -509,3 +509,9 @@ def test_the_guide_of_a_shape_is_made_once():
     design = Design(arm, verify(task, arm))
     assert make_guide(task, design) is make_guide(task, design)
     assert make_guide(replace(task, name="other"), design) is not make_guide(task, design)
+
+
+def test_a_clearance_is_told_no_farther_than_it_was_looked_for():
+    assert clearance_told(MOST_CLEARANCE) == "100.0 mm at least"
+    assert clearance_told(np.nextafter(MOST_CLEARANCE, 0.0)) == "100.0 mm at least"
+    assert clearance_told(0.04999) == "49.9 mm"

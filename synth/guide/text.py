@@ -173,8 +173,9 @@ def points_sentence(guide: Guide) -> str:
 
 def clearance_told(clearance: float) -> str:
     """Return a clearance, rounded down, which is told no farther than it was looked for."""
-    least = clearance >= MOST_CLEARANCE - 1e-9
-    return f"{rounded_down(clearance)} mm" + (" at least" if least else "")
+    if clearance >= MOST_CLEARANCE - 1e-9:  # or all but the last digit of it
+        return f"{rounded_down(MOST_CLEARANCE)} mm at least"
+    return f"{rounded_down(clearance)} mm"
 
 
 def _bullet(line: str) -> str:
