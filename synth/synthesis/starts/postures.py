@@ -112,7 +112,7 @@ class Postures:
         return cls(theta2, theta1, beyond, outward, point, miss, tangent, turns)
 
     @classmethod
-    def nearest(cls, aims: TargetsSeen, kinematics: Kinematics) -> Postures:
+    def nearest(cls, aims: TargetsSeen, kinematics: Kinematics, *, never_away: bool = False) -> Postures:
         """Return the postures nearest to the targets within the limits of the joints.
 
         Off the workspace the branches of the inverse kinematics are near its closest points; a few steps
@@ -121,31 +121,40 @@ class Postures:
         Args:
             aims: The targets.
             kinematics: The joints of the shapes, of shape (N,).
+            never_away: As for `led_from`.
         """
         second = aims.limits.second
         branches = kinematics.each_target().branches(aims.positions)[..., 1]
-        both = [cls.led_from(aims, kinematics, into_turn(branches[..., i], second.middle)) for i in range(2)]
+        both = [
+            cls.led_from(aims, kinematics, into_turn(branches[..., i], second.middle), never_away=never_away)
+            for i in range(2)
+        ]
         return both[0].where(both[0].squared <= both[1].squared, both[1])
 
     @classmethod
-    def led_from(cls, aims: TargetsSeen, kinematics: Kinematics, theta2: FloatArray) -> Postures:
+    def led_from(
+        cls, aims: TargetsSeen, kinematics: Kinematics, theta2: FloatArray, *, never_away: bool = False
+    ) -> Postures:
         """Return postures after a few Gauss-Newton steps of joint 2 from angles, joint 1 always at its best.
 
         Args:
             aims: The targets.
             kinematics: The joints of the shapes, of shape (N,).
             theta2: Angles of joint 2 to start from, shape (N, n), rad.
+            never_away: Whether a step that leads away from its target is taken back. On the rim of the
+                workspace P5 hardly moves, and a step leads anywhere: that would be untrue where a person is
+                told of it, and does no harm in a search, which has been measured without.
         """
         second = aims.limits.second
         here = cls.at(aims, kinematics, np.clip(theta2, second.lower, second.upper))
+        best = here
         for _ in range(_NEWTON_STEPS):
             along, speed = here.free_tangent
             step = -dot(along, here.miss) / np.maximum(speed, _TINY)
             theta2 = here.theta2 + np.clip(step, -_FARTHEST_STEP, _FARTHEST_STEP)
-            there = cls.at(aims, kinematics, np.clip(theta2, second.lower, second.upper))
-            # On the rim of the workspace P5 hardly moves, and such a step leads anywhere.
-            here = there.where(there.squared <= here.squared, here)
-        return here
+            here = cls.at(aims, kinematics, np.clip(theta2, second.lower, second.upper))
+            best = here.where(here.squared <= best.squared, best) if never_away else here
+        return best
 
     @cached_property
     def squared(self) -> FloatArray:

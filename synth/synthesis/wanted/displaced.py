@@ -60,7 +60,7 @@ def misses_displaced(arm: Arm, positions: FloatArray, displacements: Displacemen
     frame, end = arm.end_frame
     aimed = Kinematics(frame[None], arm.circle.centre[None], np.array([arm.circle.radius]))
     seen = TargetsSeen(positions, arm.robot.joint_limits)
-    return np.sqrt(Postures.nearest(seen, displacements.on(aimed, end[None])).squared)
+    return np.sqrt(Postures.nearest(seen, displacements.on(aimed, end[None]), never_away=True).squared)
 
 
 def rotations(vectors: FloatArray) -> FloatArray:

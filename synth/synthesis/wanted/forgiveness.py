@@ -103,7 +103,7 @@ def misses_after_a_hand(
         some = slice(first, first + together)
         aimed = Kinematics(kinematics.frame[some], kinematics.centre[some], kinematics.radius[some])
         from_here = np.repeat(theta2[some], count, axis=0)
-        left = Postures.led_from(aims, hand.on(aimed, ends[some]), from_here)
+        left = Postures.led_from(aims, hand.on(aimed, ends[some]), from_here, never_away=True)
         misses = np.sqrt(left.squared).reshape(-1, count, len(tolerances))
         worst[some] = misses.max(axis=2).mean(axis=1)
         within[some] = (misses <= tolerances).all(axis=2).mean(axis=1)
