@@ -117,6 +117,8 @@ class Search:
             if design.verification.found:
                 found += 1
                 wanted += leaves_no_wish(design.figures)  # by its ways, not only by where they end
+                if found == 1:  # the most wanted one may be had with a gentler bend
+                    self.polishing.polish(Start(design.arm, design.verification.joints), near=True)
             if (found if many else wanted) == self._alternatives:
                 break
         return found > 0
