@@ -21,7 +21,6 @@ _STARTS_AT_MOST = 48
 _STARTS_WHEN_IMPOSSIBLE = 12  # for a good best effort
 _FOLLOWED = 2  # shapes of a neighbour that are polished
 ALTERNATIVES = 2  # shapes looked for after one was found, or else starts polished
-_FEW_TARGETS = 8
 _LOOKED_AT = 4  # shapes that a person would want, for each alternative
 _ALTERNATIVES_THAT_MISS = 2  # likewise, at most, where no shape meets all targets
 _GAIN = 1e-3  # of the objective: the least that is worth another start
@@ -106,7 +105,6 @@ class Search:
     def _wished_for(self) -> bool:
         """Look for shapes that a person would rather have than the first one; whether there are any."""
         known = [design.arm for design in self.polishing.designs if design.verification.found]
-        many = len(self._task.targets) > _FEW_TARGETS  # that are not moved to one after the other
         found, wanted, candidates = 0, 0, wished(self._task, known, self._seed, self._watch.is_up)
         for _ in range(_LOOKED_AT * self._alternatives):
             with self._watch.on("solving"):
@@ -119,7 +117,7 @@ class Search:
                 wanted += leaves_no_wish(design.figures)  # by its ways, not only by where they end
                 if found == 1:  # the most wanted one may be had with a gentler bend
                     self.polishing.polish(Start(design.arm, design.verification.joints), near=True)
-            if (found if many else wanted) == self._alternatives:
+            if wanted == self._alternatives:
                 break
         return found > 0
 
