@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from synth.errors import InputError, Mistake, TimeLimitError
+from synth.watch import never
 
 KeyPath = tuple[str | int, ...]
 
@@ -55,7 +56,7 @@ class Document:
         is_up: Asked now and then whether the time for reading is up.
     """
 
-    def __init__(self, file: str | None = None, is_up: Callable[[], bool] = lambda: False) -> None:
+    def __init__(self, file: str | None = None, is_up: Callable[[], bool] = never) -> None:
         self.value: Any = REFUSED
         self.file = file
         self._is_up = is_up

@@ -24,6 +24,7 @@ from ruamel.yaml.reader import ReaderError
 
 from synth.errors import InputError, Mistake
 from synth.files.document import MAX_DEPTH, REFUSED, Document, KeyPath
+from synth.watch import never
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -42,7 +43,7 @@ _PAIR = re.compile("[\ud800-\udbff][\udc00-\udfff]")
 _NOT_FINITE = re.compile(r"[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)")
 
 
-def read_file(path: Path, is_up: Callable[[], bool] = lambda: False) -> Document:
+def read_file(path: Path, is_up: Callable[[], bool] = never) -> Document:
     """Read a YAML file.
 
     Args:
@@ -72,7 +73,7 @@ def read_file(path: Path, is_up: Callable[[], bool] = lambda: False) -> Document
     return read_text(text, str(path), is_up)
 
 
-def read_text(text: str, file: str | None = None, is_up: Callable[[], bool] = lambda: False) -> Document:
+def read_text(text: str, file: str | None = None, is_up: Callable[[], bool] = never) -> Document:
     """Read a YAML text.
 
     Args:

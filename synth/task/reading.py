@@ -23,6 +23,7 @@ from synth.task.robot_schema import RobotEntry, RobotFile
 from synth.task.schema import SurfaceTaskFile, TaskFile
 from synth.task.sizes import PER_METRE, unmeant_distances, unmeant_sizes, unmeant_sizes_of_robot
 from synth.task.wording import validate
+from synth.watch import never
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 _ROBOT_FILES = {".yaml", ".yml", ".json"}
 
 
-def load_task(path: str | os.PathLike[str], *, is_up: Callable[[], bool] = lambda: False) -> Task:
+def load_task(path: str | os.PathLike[str], *, is_up: Callable[[], bool] = never) -> Task:
     """Read a task file.
 
     Args:
@@ -73,7 +74,7 @@ def parse_task(
     return _task(document, directory=Path(directory), name=name)
 
 
-def as_task(source: object, *, is_up: Callable[[], bool] = lambda: False) -> Task:
+def as_task(source: object, *, is_up: Callable[[], bool] = never) -> Task:
     """Return a task from whatever stands for one: itself, the path of its file, or a mapping as in a file.
 
     Args:

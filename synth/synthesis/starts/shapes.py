@@ -19,11 +19,9 @@ if TYPE_CHECKING:
     from synth.robot import Interval, Robot
 
 _AT_LIMIT = 1e-9
-_EQUAL = 1e-12  # of the whole length
-_TINY = 1e-300
+_EQUAL, _TINY = 1e-12, 1e-300  # the first of the whole length
 _LEAST_RADIUS = 1e-3  # m; with P3, P4, P5 in line the radius has no derivative
-# An axis 1 rad off puts P5 about this far off, m.
-ARM_LENGTH = 0.5
+ARM_LENGTH = 0.5  # m; an axis 1 rad off puts P5 about this far off
 ARCS = 4  # equal arcs of a link: eight curvatures and a length for the five numbers of an end pose
 # The columns of the unknowns; d35 and d45 are there where the rigid link is free.
 CURVATURES, LENGTH, _D35, _D45 = slice(0, 2 * ARCS), 2 * ARCS, 2 * ARCS + 1, 2 * ARCS + 2
@@ -59,14 +57,13 @@ class Shapes:
         direction = rng.uniform(0.0, 2.0 * np.pi, (size, ARCS))
         curvatures = np.stack([bend * np.cos(direction), bend * np.sin(direction)], axis=-1)
         lengths = [rng.uniform(each.lower, each.upper, size) for each in _lengths(robot)]
-        unknowns = np.column_stack([curvatures.reshape(size, -1), *lengths])
-        return cls(robot, into_limits(robot, unknowns))
+        return cls(robot, into_limits(robot, np.column_stack([curvatures.reshape(size, -1), *lengths])))
 
     @classmethod
     def of(cls, arm: Arm) -> Shapes:
         """Return the one shape of an arm, which is of ARCS equal arcs."""
         curvatures = (arm.shape.curvatures * arm.robot.link.min_bend_radius).ravel()
-        rigid = [] if arm.robot.rigid_link.is_fixed else [arm.d35, arm.d45]
+        rigid = () if arm.robot.rigid_link.is_fixed else (arm.d35, arm.d45)
         return cls(arm.robot, np.array([[*curvatures, arm.shape.length, *rigid]]))
 
     @property
@@ -100,6 +97,11 @@ class Shapes:
         frame, position = chain_end(self.curvatures, lengths)
         return frame, position + np.array([0.0, 0.0, self.robot.d12])
 
+    @property
+    def poses(self) -> FloatArray:
+        """Where the links end and how axis 2 points there, by ARM_LENGTH as long, shape (..., 6), m."""
+        return np.concatenate([self.end[1], ARM_LENGTH * self.end[0][..., 0]], axis=-1)
+
     @cached_property
     def motion(self) -> FloatArray:
         """How the unknowns move the link's end and the circle of P5, shape (N, 6 or 8, unknowns).
@@ -127,9 +129,8 @@ class Shapes:
     @cached_property
     def centreline(self) -> FloatArray:
         """Points of the centrelines in the base frame, four on each arc, shape (..., 4 ARCS, 3), m."""
-        pieces = 4
-        curvatures = np.repeat(self.curvatures, pieces, axis=-2)
-        lengths = np.repeat(self.length[..., None] / (pieces * ARCS), pieces * ARCS, axis=-1)
+        curvatures = np.repeat(self.curvatures, 4, axis=-2)
+        lengths = np.repeat(self.length[..., None] / (4 * ARCS), 4 * ARCS, axis=-1)
         return np.asarray(chain_points(curvatures, lengths) + np.array([0.0, 0.0, self.robot.d12]))
 
     @cached_property
@@ -158,8 +159,7 @@ class Shapes:
         """
         size = rng.choice(sizes, (len(self.unknowns), 1)) * np.ones(self.unknowns.shape)
         size[:, LENGTH:] *= lengths
-        moved = self.unknowns + size * rng.normal(size=self.unknowns.shape)
-        return Shapes(self.robot, into_limits(self.robot, moved))
+        return Shapes(self.robot, into_limits(self.robot, self.unknowns + size * rng.normal(size=size.shape)))
 
     def where(self, mine: NDArray[np.bool_], other: Shapes) -> Shapes:
         """Return these shapes where a mask, shape (N,), says so, and others elsewhere."""
@@ -238,8 +238,8 @@ def free_directions(shapes: Shapes, slope: FloatArray) -> FloatArray:
     normal = (free @ normal[..., None])[..., 0]
     squared = np.einsum("ni,ni->n", normal, normal)
     most = robot.link.max_total_bend * ARCS / robot.link.max_curvature
-    more = np.einsum("ni,ni->n", slope, normal) < 0.0
-    held = more & (total * shapes.length >= most - _AT_LIMIT) & (squared > _AT_LIMIT)
+    held = (total * shapes.length >= most - _AT_LIMIT) & (squared > _AT_LIMIT)
+    held &= np.einsum("ni,ni->n", slope, normal) < 0.0  # it would bend more
     free -= (held / np.maximum(squared, _TINY))[:, None, None] * normal[:, :, None] * normal[:, None, :]
     return free
 

@@ -16,7 +16,6 @@ from synth.arrays import compared_by_value
 from synth.synthesis.starts.exact_arms import exact_arms, nearest_to_exact_arms
 from synth.synthesis.starts.refined import relative_weights
 from synth.synthesis.starts.screening import screened, shapes_at_random
-from synth.synthesis.starts.shapes import ARM_LENGTH
 from synth.synthesis.starts.thinning import thinned
 from synth.synthesis.starts.turned_arms import as_it_is_and_turned
 from synth.synthesis.starts.valleys import Valleys
@@ -136,8 +135,7 @@ class _Distinct:
     def of(self, refined: Refined) -> Iterator[Start]:
         """Yield starts in the order of their costs, m^2, except those that are nearly one yielded before."""
         shapes, base, yielded = refined.shapes, self._task.base, 0
-        frame, position = shapes.end
-        poses = np.hstack([position, ARM_LENGTH * frame[:, :, 0]])
+        poses = shapes.poses
         as_good = min(_SETTLED, _SETTLED_PART * float(self._task.tolerances.min())) ** 2
         cost = np.maximum(refined.cost, as_good)
         # Shapes that miss alike are mostly one surface, bent in several ways.

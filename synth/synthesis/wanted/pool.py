@@ -9,7 +9,6 @@ import numpy as np
 
 from synth.arrays import compared_by_value
 from synth.synthesis.starts import (
-    ARM_LENGTH,
     Postures,
     Shapes,
     TargetsSeen,
@@ -101,8 +100,7 @@ class Pool:
 
     def distinct(self) -> NDArray[np.intp]:
         """Return which shapes differ from all that are wanted more."""
-        frame, position = self.shapes.end
-        poses = np.hstack([position, ARM_LENGTH * frame[:, :, 0]])
+        poses = self.shapes.poses
         apart = np.linalg.norm(poses[:, None] - poses, axis=-1) >= _DISTINCT
         kept: list[int] = []
         for index in range(len(poses)):

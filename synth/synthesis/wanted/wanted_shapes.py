@@ -29,6 +29,7 @@ from synth.synthesis.wanted.margins import drawn_in
 from synth.synthesis.wanted.pool import Pool, swings_of
 from synth.synthesis.wanted.ranking import CALM, STEPS, is_content
 from synth.task import Objective
+from synth.watch import never
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -61,7 +62,7 @@ _EXACTLY = 0.02  # of its tolerance a miss may take where targets are met exactl
 
 
 def wished(
-    task: Task, known: Sequence[Arm], seed: int, stop: Callable[[], bool] = lambda: False
+    task: Task, known: Sequence[Arm], seed: int, stop: Callable[[], bool] = never
 ) -> Iterator[tuple[Arm, FloatArray]]:
     """Yield distinct shapes off their limits that come within the tolerances, the most wanted first.
 
@@ -98,25 +99,30 @@ def _searched(
     While the best leaves ways, margins or calm to wish for, all is begun anew with joint 2 kept in a part of
     its range, where no swing can be large: calm shapes are too rare to be met by chance.
     """
-    pool = _bred(task, narrow, known, _LED, rng, stop)
-    tight = float(task.tolerances.min()) < _TIGHT
-    for calmer in () if tight else _calmer(narrow):
+    pool = _bred(task, narrow, known, _LED, _ITERATIONS, rng, stop)
+    for calmer in _calmer(narrow):
         if stop() or not len(pool.table) or is_content(pool.table[0]):
             break
-        pool = pool.joined(_bred(task, calmer, (), _LED_CALMER, rng, stop))
-    if float(task.tolerances.min()) < _TIGHT and len(pool.table):
+        pool = pool.joined(_bred(task, calmer, (), _LED_CALMER, _ITERATIONS_CALMER, rng, stop))
+    if _is_tight(task) and len(pool.table):
         chosen = pool.shapes.take(pool.distinct()[:_BENT])
         led = refine(narrow, chosen, iterations=_ITERATIONS_AGAIN, is_up=stop)
         pool = Pool.of(task, narrow, led.shapes, stop, _EXACTLY)
     return pool
 
 
+def _is_tight(task: Task) -> bool:
+    """Whether there is nothing to be had of the tolerances, so that targets are met exactly."""
+    return float(task.tolerances.min()) < _TIGHT
+
+
 def _calmer(task: Task) -> Iterator[Task]:
     """Yield the same with joint 2 kept in one part of its range after another, and twice as it is.
 
-    None where the nearest to the present shape is wanted, nor for many targets: a scan has no order.
+    None where the nearest to the present shape is wanted, where targets are met exactly, nor for many of
+    them: a scan has no order.
     """
-    if task.current is not None or len(task.targets) > _FEW_TARGETS:
+    if task.current is not None or _is_tight(task) or len(task.targets) > _FEW_TARGETS:
         return
     limits = task.robot.joint_limits
     spare = max(limits.second.upper - limits.second.lower - CALM, 0.0)
@@ -132,6 +138,7 @@ def _bred(
     narrow: Task,
     known: Sequence[Arm],
     led: int,
+    iterations: int,
     rng: np.random.Generator,
     stop: Callable[[], bool],
 ) -> Pool:
@@ -140,12 +147,11 @@ def _bred(
     if known:
         shapes = Shapes(narrow.robot, Shapes.joined([Shapes.of(arm) for arm in known]).unknowns)
         beginnings = Shapes.joined([beginnings, _varied(shapes, _FROM_KNOWN, rng)])
-    iterations = _ITERATIONS if known else _ITERATIONS_CALMER
     refined = refine(narrow, beginnings, iterations=iterations, is_up=stop)
     pool = Pool.of(task, narrow, refined.shapes, stop)
     # Where targets are met exactly and fix finitely many surfaces, bending changes nothing that counts more
     # than the bend itself.
-    finite = float(task.tolerances.min()) < _TIGHT and exact_arms(narrow) is not None
+    finite = _is_tight(task) and exact_arms(narrow) is not None
     gained = [np.full(_COUNTS, np.inf)]
     for _ in range(0 if finite else _ROUNDS):
         if stop() or not len(pool.table):
