@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from oracle import distance_from_solid
 
-from synth.geometry import Box, Capsule, Sphere
+from synth.geometry import Box, Capsule, Sphere, rotation_of
 
 RNG = np.random.default_rng(5)
 SOLIDS = [
@@ -53,10 +53,10 @@ def test_support_leaves_the_whole_solid_on_one_side_and_touches_it(solid):
 
 
 def test_seen_from_another_frame_nothing_moves(solid):
-    position, yaw = np.array([0.3, -0.2, 0.5]), 0.7
-    c, s = np.cos(yaw), np.sin(yaw)
-    there = (POINTS - position) @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
-    assert solid.seen_from(position, yaw).distance(there) == pytest.approx(solid.distance(POINTS), abs=1e-12)
+    position = np.array([0.3, -0.2, 0.5])
+    turned = rotation_of(0.0, 0.0, 0.7) @ rotation_of(0.9, -0.4, 0.0)
+    there = (POINTS - position) @ turned
+    assert solid.seen_from(position, turned).distance(there) == pytest.approx(solid.distance(POINTS), abs=1e-12)
 
 
 def test_on_the_axis_of_a_capsule_outward_is_across_it():

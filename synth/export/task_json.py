@@ -24,7 +24,7 @@ def task_to_json(task: Task) -> dict[str, object]:
         "name": task.name,
         "robot": _robot(task.robot),
         "base": task.base,
-        "floor": task.floor,
+        "floor": task.floor_height,
         "topology": task.topology.value,
         "objective": task.objective.value,
         "targets": [
@@ -75,7 +75,7 @@ def _interval(interval: Interval) -> list[float]:
 def _obstacle(obstacle: Obstacle) -> dict[str, object]:
     solid = obstacle.solid
     if isinstance(solid, Box):
-        box = {"center": solid.centre, "size": solid.size, "yaw": solid.yaw}
+        box = {key: getattr(solid, key) for key in ("size", "yaw", "pitch", "roll")} | {"center": solid.centre}
         return {"name": obstacle.name, "box": box}
     start, end = solid.ends
     if np.array_equal(start, end):

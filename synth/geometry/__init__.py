@@ -48,6 +48,7 @@ from synth.geometry.exact import (
 from synth.geometry.gamma import WorkspaceSurface, distance_polynomials, gamma_determinant
 from synth.geometry.invariants import Invariants
 from synth.geometry.least_value import least_values
+from synth.geometry.rotations import roll_pitch_yaw, rotation_of
 from synth.geometry.solids import Box, Capsule, Solid, Sphere
 from synth.geometry.trigonometric import critical_angles, sampling_angles
 
@@ -79,6 +80,8 @@ __all__ = [
     "least_values",
     "planes_through",
     "realise",
+    "roll_pitch_yaw",
+    "rotation_of",
     "sample_exact_arms",
     "sampling_angles",
     "spheres_through",

@@ -7,13 +7,14 @@ and offset max over the solid of n . x leave the whole solid on one side.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from synth.arrays import FloatArray, compared_by_value
 from synth.checks import Checks
+from synth.geometry.rotations import roll_pitch_yaw, rotation_of
 
 _UP = np.array([0.0, 0.0, 1.0])
 
@@ -56,9 +57,9 @@ class Sphere:
         """Return the largest n . x over the solid for unit vectors n, shape (..., 3); shape (...), m."""
         return np.asarray(directions @ self.centre + self.radius)
 
-    def seen_from(self, position: FloatArray, yaw: float) -> Sphere:
-        """Return the same solid in a frame at `position`, shape (3,), m, turned by `yaw`, rad, about z."""
-        return Sphere((self.centre - position) @ _about_z(yaw), self.radius)
+    def seen_from(self, position: FloatArray, rotation: FloatArray) -> Sphere:
+        """Return the same solid in a frame at `position`, shape (3,), m, turned by a matrix, (3, 3)."""
+        return Sphere((self.centre - position) @ rotation, self.radius)
 
 
 @compared_by_value
@@ -94,9 +95,9 @@ class Capsule:
         """Return the largest n . x over the solid for unit vectors n, shape (..., 3); shape (...), m."""
         return np.asarray((directions @ self.ends.T).max(axis=-1) + self.radius)
 
-    def seen_from(self, position: FloatArray, yaw: float) -> Capsule:
-        """Return the same solid in a frame at `position`, shape (3,), m, turned by `yaw`, rad, about z."""
-        return Capsule((self.ends - position) @ _about_z(yaw), self.radius)
+    def seen_from(self, position: FloatArray, rotation: FloatArray) -> Capsule:
+        """Return the same solid in a frame at `position`, shape (3,), m, turned by a matrix, (3, 3)."""
+        return Capsule((self.ends - position) @ rotation, self.radius)
 
     def _from_segment(self, points: FloatArray) -> FloatArray:
         start, along = self.ends[0], self.ends[1] - self.ends[0]
@@ -115,24 +116,34 @@ class Capsule:
 @compared_by_value
 @dataclass(frozen=True, eq=False)
 class Box:
-    """A box with vertical edges.
+    """A box.
 
     Attributes:
         centre: Its centre, shape (3,), m.
         size: Its extent along its own x, y and z axes, shape (3,), m.
-        yaw: Rotation of these axes about the vertical, rad.
+        yaw: Rotation of these axes about the z axis, rad, after the two others.
+        pitch: Rotation about the y axis, rad, after `roll`.
+        roll: Rotation about the x axis, rad.
     """
 
     centre: FloatArray
     size: FloatArray
     yaw: float = 0.0
+    pitch: float = 0.0
+    roll: float = 0.0
 
     def __post_init__(self) -> None:
         checks = Checks(self)
         checks.array("centre", (3,))
         checks.array("size", (3,), above=0.0)
-        checks.number("yaw")
+        for key in ("yaw", "pitch", "roll"):
+            checks.number(key)
         checks.refuse()
+
+    @cached_property
+    def axes(self) -> FloatArray:
+        """Its own axes as the columns of a rotation matrix, shape (3, 3)."""
+        return rotation_of(self.roll, self.pitch, self.yaw)
 
     def distance(self, points: FloatArray) -> FloatArray:
         """Return the signed distance of points, shape (..., 3), m; shape (...), negative inside."""
@@ -148,25 +159,19 @@ class Box:
         nearest_face = np.where(beyond == beyond.max(axis=-1, keepdims=True), 1.0, 0.0)
         away = np.where((beyond > 0.0).any(axis=-1, keepdims=True), outside, nearest_face)
         away = np.where(own < 0.0, -away, away)
-        return np.asarray(away / np.linalg.norm(away, axis=-1, keepdims=True) @ _about_z(self.yaw).T)
+        return np.asarray(away / np.linalg.norm(away, axis=-1, keepdims=True) @ self.axes.T)
 
     def support(self, directions: FloatArray) -> FloatArray:
         """Return the largest n . x over the solid for unit vectors n, shape (..., 3); shape (...), m."""
-        return np.asarray(
-            directions @ self.centre + np.abs(directions @ _about_z(self.yaw)) @ (0.5 * self.size)
-        )
+        return np.asarray(directions @ self.centre + np.abs(directions @ self.axes) @ (0.5 * self.size))
 
-    def seen_from(self, position: FloatArray, yaw: float) -> Box:
-        """Return the same solid in a frame at `position`, shape (3,), m, turned by `yaw`, rad, about z."""
-        return Box((self.centre - position) @ _about_z(yaw), self.size, self.yaw - yaw)
+    def seen_from(self, position: FloatArray, rotation: FloatArray) -> Box:
+        """Return the same solid in a frame at `position`, shape (3,), m, turned by a matrix, (3, 3)."""
+        return Box((self.centre - position) @ rotation, self.size, *roll_pitch_yaw(rotation.T @ self.axes)[::-1])
 
     def _inside_frame(self, points: FloatArray) -> FloatArray:
-        return np.asarray((points - self.centre) @ _about_z(self.yaw))
+        return np.asarray((points - self.centre) @ self.axes)
 
 
 Solid = Sphere | Box | Capsule
 
-
-def _about_z(angle: float) -> FloatArray:
-    c, s = math.cos(angle), math.sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])

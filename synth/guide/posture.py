@@ -67,9 +67,9 @@ def hold_posture(task: Task, arm: Arm) -> HoldPosture:
 def _clear_by_itself(task: Task, body: ArmBody, seconds: FloatArray) -> FloatArray:
     """Return at which angles of joint 2 the rigid link is clear of the floor and of the malleable one."""
     clear = body.rod_from_tube(seconds) >= body.clear
-    if task.floor is not None:
+    if task.floor_in_base is not None:
         heights = body.arm.kinematics.forward(0.0, seconds)[:, 2] - body.rod_radius
-        clear &= heights >= task.floor + body.clear
+        clear &= heights >= task.floor_in_base + body.clear
     return np.asarray(clear)
 
 

@@ -1,6 +1,7 @@
 """The robot: hardware, malleable link, forward and inverse kinematics, workspace."""
 
 from synth.robot.arm import Arm, JointBranches
+from synth.robot.base_places import BaseChoices, BasePlaces, BaseRange
 from synth.robot.base_pose import BasePose
 from synth.robot.clearance import MOST_CLEARANCE, ArmBody
 from synth.robot.closest_joints import closest_joints
@@ -40,7 +41,10 @@ __all__ = [
     "ArcChains",
     "Arm",
     "ArmBody",
+    "BaseChoices",
+    "BasePlaces",
     "BasePose",
+    "BaseRange",
     "Interval",
     "JointBranches",
     "JointLimits",

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.checks import Checks
+from synth.geometry import rotation_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+_UPRIGHT = 1e-9  # rad; an axis 1 that leans by less does so by rounding
 
 
 @compared_by_value
@@ -22,23 +25,33 @@ class BasePose:
 
     Attributes:
         position: P1 in the task frame, shape (3,), m.
-        yaw: Rotation of the base frame about the vertical, rad.
+        yaw: Rotation of the base frame about the vertical, rad, after the two others.
+        pitch: Rotation about the y axis of the task frame, rad, after `roll`.
+        roll: Rotation about the x axis of the task frame, rad: 90 deg hangs the robot on a wall with axis 1
+            along -y, 180 deg on a ceiling.
     """
 
     position: FloatArray = field(default_factory=lambda: np.zeros(3))
     yaw: float = 0.0
+    pitch: float = 0.0
+    roll: float = 0.0
 
     def __post_init__(self) -> None:
         checks = Checks(self)
         checks.array("position", (3,))
-        checks.number("yaw")
+        for key in ("yaw", "pitch", "roll"):
+            checks.number(key)
         checks.refuse()
 
-    @property
+    @cached_property
     def rotation(self) -> FloatArray:
-        """Rotation matrix from the base frame to the task frame, shape (3, 3)."""
-        c, s = math.cos(self.yaw), math.sin(self.yaw)
-        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        """Rotation matrix from the base frame to the task frame, Rz(yaw) Ry(pitch) Rx(roll), shape (3, 3)."""
+        return frozen(rotation_of(self.roll, self.pitch, self.yaw))
+
+    @property
+    def is_upright(self) -> bool:
+        """Whether axis 1 is vertical and points up."""
+        return bool(np.hypot(self.rotation[0, 2], self.rotation[1, 2]) < _UPRIGHT and self.rotation[2, 2] > 0.0)
 
     def to_task(self, points: ArrayLike) -> FloatArray:
         """Turn points of the base frame, shape (..., 3), into points of the task frame."""
@@ -47,3 +60,9 @@ class BasePose:
     def to_base(self, points: ArrayLike) -> FloatArray:
         """Turn points of the task frame, shape (..., 3), into points of the base frame."""
         return (np.asarray(points, dtype=np.float64) - self.position) @ self.rotation
+
+    def turned_from(self, other: BasePose) -> float:
+        """Return the angle by which the base is turned from another, about whatever axis, rad."""
+        turn = other.rotation.T @ self.rotation
+        skew = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
+        return float(np.arctan2(np.linalg.norm(skew), np.trace(turn) - 1.0))

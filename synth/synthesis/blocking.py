@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.checks import refuse_unless
-from synth.robot import BasePose
 from synth.rounding import rounded_up
 from synth.synthesis.check import verify
 from synth.synthesis.relaxed_limits import limits_of, without_limits
@@ -183,9 +182,8 @@ def _base_moved(solution: Solution, watch: Watch) -> Release | None:
     task = solution.task
 
     def moved(shift: FloatArray) -> Task:
-        floor = None if task.floor is None else task.floor - float(shift[2])
-        base = BasePose(task.base.position + shift, task.base.yaw)
-        return replace(task, base=base, floor=floor)
+        base = replace(task.base, position=task.base.position + shift)
+        return replace(task, base=base, floor=task.floor_height)
 
     shift, designs = np.zeros(3), solution.designs[:1]
     for _ in range(_BASE_STEPS):

@@ -83,8 +83,8 @@ def limits_of(task: Task) -> Iterator[Limit]:
                         limits, **{key: Interval(interval.lower - more, interval.upper + more)}))),
                 lambda more, name=name: f"{rounded_up(more, Unit.DEG)} deg more of {name} at each end",  # type: ignore[misc]
             )  # fmt: skip
-    if task.floor is not None:
-        floor, depth = task.floor, robot.d12 + high
+    if (floor := task.floor_height) is not None:
+        depth = robot.d12 + high
         yield Limit(
             "floor", high, depth,
             lambda lower: replace(task, floor=floor - lower),

@@ -24,6 +24,7 @@ from synth.synthesis.wanted import Design, best_of
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from synth.robot import BasePlaces
     from synth.synthesis.bound import Bound
     from synth.task import Task
     from synth.watch import Watch
@@ -48,6 +49,8 @@ class Run:
         bound: What was proven.
         broke_off: What broke that nobody foresaw.
         notes: What else is to be said.
+        places: Where the base could be made to stand; `task` has it at the one of these that was chosen.
+        elsewhere: Whether another of them may do what this one cannot.
     """
 
     task: Task
@@ -59,6 +62,8 @@ class Run:
     bound: Bound | None = None
     broke_off: Exception | None = None
     notes: list[str] = field(default_factory=list)
+    places: BasePlaces | None = None
+    elsewhere: bool = False
 
     @contextmanager
     def kept(self) -> Iterator[None]:
@@ -80,6 +85,11 @@ class Run:
         # What proves that a part is out of reach proves it of all, and is sooner done.
         limited = self.watch.remaining < math.inf and len(self.task.targets) > _PROVEN_IN_TIME
         return why_impossible(self.part if limited else self.task)
+
+    @property
+    def is_impossible(self) -> bool:
+        """Whether it is known that no shape can do the task where the base stands."""
+        return bool(self._impossible)
 
     @property
     def kept_back(self) -> float:
@@ -138,7 +148,7 @@ class Run:
         with self.kept():
             words = message(task, status, designs, (*self._why_broken(), *reasons))
         return Solution(
-            task,
+            replace(task, places=self.places),
             status,
             words,
             (*self._why_broken(), *reasons),
@@ -176,9 +186,9 @@ class Run:
             return Status.FOUND, ()
         if self.broke_off is not None:
             return Status.FAILED, ()
-        if self._impossible:
+        if self._impossible and not self.elsewhere:
             return Status.PROVEN_IMPOSSIBLE, self._impossible
-        if self.bound is not None and self.bound.excludes:
+        if self.bound is not None and self.bound.excludes and not self.elsewhere:
             return Status.PROVEN_IMPOSSIBLE, (self.bound.sentence,)
         if self.search.polishing.breakdowns and not (
             self.search.polishing.designs or self.search.polishing.blocked

@@ -66,6 +66,16 @@ class Search:
                 break
         return self.polishing.found
 
+    def begin(self, start: Start) -> None:
+        """Polish one start point."""
+        self._polish(start)
+
+    def look_beside(self, alternatives: int) -> None:
+        """Where a shape reaches every target, look for others that a person would rather have."""
+        self._alternatives = alternatives
+        if self.polishing.found and alternatives and not self._watch.is_up():
+            self._wished_for()
+
     def run(self, most: int | None = None) -> None:
         """Polish start points until enough is found, or the time is up; if `most`, quick ones, so many."""
         usual = _STARTS_WHEN_IMPOSSIBLE if self._is_impossible() else _STARTS_AT_MOST
@@ -123,7 +133,7 @@ class Search:
 
     def _promises_all(self, start: Start) -> bool:
         """Whether a start may reach every target as it is, and the program may lose it among obstacles."""
-        if not self._task.obstacles:
+        if not self._task.solids:
             return False
         return start.cost <= float(self._task.tolerances.min()) ** 2
 

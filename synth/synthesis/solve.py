@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from synth.synthesis.arguments import checked_task
 from synth.synthesis.many_targets import part_of
+from synth.synthesis.placing import placed
 from synth.synthesis.run import Run
 from synth.synthesis.search import ALTERNATIVES
 from synth.watch import Watch
@@ -66,6 +67,12 @@ def solve(
         time_limit=time_limit,
         is_up=watch.is_up,
     )
+    if task.places is not None:
+        run = placed(task, seed, watch, alternatives)
+        if prove:
+            with run.kept():
+                run.prove()
+        return run.solution()
     run = Run(task, part_of(task, seed), seed, watch, alternatives)
     near = warm_start.designs if warm_start is not None and warm_start.task.robot == task.robot else ()
     with run.kept(), watch.keeping_back(run.kept_back):

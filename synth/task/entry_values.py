@@ -10,7 +10,10 @@ import numpy as np
 from synth.errors import InputError, Mistake
 from synth.geometry import Box, Capsule, Sphere
 from synth.robot import (
+    BaseChoices,
+    BasePlaces,
     BasePose,
+    BaseRange,
     Interval,
     JointLimits,
     LinkShape,
@@ -32,6 +35,7 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.geometry import Solid
+    from synth.task.base_schema import BaseEntry, ChoiceEntry
     from synth.task.robot_schema import RobotEntry
     from synth.task.schema import CurrentEntry, ObstacleEntry, TargetEntry, TaskFile
 
@@ -49,14 +53,14 @@ def to_task(file: TaskFile, robot: Robot, scan: FloatArray | None, name: str) ->
         InputError: The values do not fit together; keys are those of the file.
     """
     per_metre = PER_METRE[file.length_unit]
-    base = BasePose(np.array(file.base.position) / per_metre, math.radians(file.base.yaw_deg))
+    base, places = _to_base(file.base, per_metre)
     current = None if file.current is None else _to_shape(file.current, per_metre, robot, base)
     return Task(
         name=file.name or name,
         robot=robot,
         targets=_targets(file, scan, per_metre),
         base=base,
-        floor=None if file.floor is None else file.floor / per_metre,
+        floor=file.floor / per_metre if isinstance(file.floor, float) else file.floor,
         topology=file.topology,
         objective=file.objective,
         obstacles=tuple(
@@ -64,6 +68,26 @@ def to_task(file: TaskFile, robot: Robot, scan: FloatArray | None, name: str) ->
             for index, entry in enumerate(file.obstacles)
         ),
         current=current,
+        places=places,
+    )
+
+
+def _to_base(entry: BaseEntry, per_metre: float) -> tuple[BasePose, BasePlaces | None]:
+    """Return the pose of the base, and from which places it is to be chosen if it is not given."""
+    if entry.choices:
+        names = [choice.name or default_name("place", index) for index, choice in enumerate(entry.choices)]
+        choices = BaseChoices(names, [_to_range(choice, per_metre).middle for choice in entry.choices])
+        return choices.middle, choices
+    places = _to_range(entry, per_metre)
+    return places.middle, None if places.is_fixed else places
+
+
+def _to_range(entry: BaseEntry | ChoiceEntry, per_metre: float) -> BaseRange:
+    angles = entry.rpy_deg or [0.0, 0.0, entry.yaw_deg or 0.0]
+    in_radians = (tuple(map(math.radians, ends(angle))) for angle in angles)
+    return BaseRange(
+        *(_interval(coordinate, per_metre) for coordinate in entry.position),
+        *(Interval(low, high) for low, high in in_radians),
     )
 
 

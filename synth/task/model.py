@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.checks import Checks, described, wrong_type
 from synth.geometry import Box, Capsule, Sphere
 from synth.names import given_twice
-from synth.robot import BasePose, LinkShape, Robot
+from synth.robot import BaseChoices, BasePlaces, BasePose, BaseRange, LinkShape, Robot
 from synth.task.targets import PointTarget, TargetTable
 
 if TYPE_CHECKING:
     from synth.geometry import Solid
+
+_SLAB = 100.0  # m: the edge of the block that stands for a floor
 
 
 class Topology(Enum):
@@ -27,6 +32,12 @@ class Topology(Enum):
     PUMA = "puma"
     SCARA = "scara"
     SPHERICAL = "spherical"
+
+
+class Floor(Enum):
+    """A floor that is not told as a height."""
+
+    AT_BASE = "at base"
 
 
 class Objective(Enum):
@@ -65,9 +76,10 @@ class Task:
         name: What the task is called.
         robot: The hardware.
         targets: What shall be reached.
-        base: Where the robot stands.
-        floor: Height in the base frame, m, that link, joint and end effector stay above; None
-            where there is no floor.
+        base: Where the robot stands; where the synthesis chooses it, the middle of the places or the first.
+        floor: Height in the task frame, m, that link, joint and end effector stay above; None where there is
+            none. By default that of P1 where the base is upright, and none where it leans.
+        places: Where the robot may be made to stand; None where `base` says it.
         topology: Kind of shape asked for.
         objective: Norm of the misses that is made small.
         obstacles: What the robot keeps clear of at every target.
@@ -79,11 +91,12 @@ class Task:
     robot: Robot
     targets: Sequence[PointTarget]
     base: BasePose = field(default_factory=BasePose)
-    floor: float | None = 0.0
+    floor: float | Floor | None = Floor.AT_BASE
     topology: Topology = Topology.ANY
     objective: Objective = Objective.LEAST_SQUARES
     obstacles: tuple[Obstacle, ...] = ()
     current: LinkShape | None = None
+    places: BasePlaces | None = None
 
     def __post_init__(self) -> None:
         checks = Checks(self)
@@ -100,7 +113,7 @@ class Task:
             table = self.targets
             _report_names_given_twice(checks, "targets", table.names, table.names_given_twice)
         checks.is_a("base", BasePose)
-        if self.floor is not None:
+        if not isinstance(self.floor, Floor | None):
             checks.number("floor")
         checks.word("topology", Topology)
         checks.word("objective", Objective)
@@ -110,7 +123,11 @@ class Task:
             _report_names_given_twice(checks, "obstacles", names, given_twice(names))
         if self.current is not None:
             checks.is_a("current", LinkShape)
+        if self.places is not None:
+            checks.is_a("places", (BaseRange, BaseChoices))
         checks.refuse()
+        if self.places is not None and not self.places.contains(self.base):
+            checks.put("base", self.places.middle)
 
     @cached_property
     def table(self) -> TargetTable:
@@ -132,11 +149,60 @@ class Task:
         """Weights of all targets, shape (n,)."""
         return self.table.weights
 
+    def standing_at(self, base: BasePose) -> Task:
+        """Return the same task with the base at one of its places, and no choice of it left."""
+        return replace(self, base=base, places=None)
+
+    def lowest_from(self, base: BasePose) -> float:
+        """Return the height in the frame of an upright base that the arm stays above, m; -inf for none.
+
+        Where the base leans the floor is a solid to keep clear of, see `solids_from`.
+        """
+        if self.floor is None or not base.is_upright:
+            return -math.inf
+        return 0.0 if isinstance(self.floor, Floor) else self.floor - float(base.position[2])
+
+    def solids_from(self, base: BasePose) -> tuple[Solid, ...]:
+        """Return what the arm keeps clear of in the frame of a base."""
+        return tuple(
+            obstacle.solid.seen_from(base.position, base.rotation) for obstacle in self.obstacles_from(base)
+        )
+
+    def obstacles_from(self, base: BasePose) -> tuple[Obstacle, ...]:
+        """Return the obstacles, for a base that leans with a slab for the floor."""
+        if base.is_upright or not isinstance(self.floor, float):
+            return self.obstacles
+        return (*self.obstacles, _slab(self.floor, base.position))
+
     @property
+    def floor_height(self) -> float | None:
+        """Height of the floor in the task frame, m; None where there is none."""
+        if isinstance(self.floor, Floor):
+            return float(self.base.position[2]) if self.base.is_upright else None
+        return self.floor
+
+    @cached_property
+    def floor_in_base(self) -> float | None:
+        """Height of the floor in the base frame, m; None where there is none or the base leans."""
+        lowest = self.lowest_from(self.base)
+        return None if lowest == -math.inf else lowest
+
+    @property
+    def solids_in_task(self) -> tuple[Solid, ...]:
+        """What the arm keeps clear of in the task frame, wherever the base stands; a floor of a height too."""
+        floor = [_slab(self.floor, self.base.position)] if isinstance(self.floor, float) else []
+        return tuple(obstacle.solid for obstacle in (*self.obstacles, *floor))
+
+    @cached_property
     def solids(self) -> tuple[Solid, ...]:
-        """The obstacles in the base frame."""
-        base = self.base
-        return tuple(obstacle.solid.seen_from(base.position, base.yaw) for obstacle in self.obstacles)
+        """What the arm keeps clear of in the base frame."""
+        return self.solids_from(self.base)
+
+
+def _slab(height: float, position: FloatArray) -> Obstacle:
+    """Return a block that stands for a floor about a position."""
+    middle = np.array([position[0], position[1], height - 0.5 * _SLAB])
+    return Obstacle("the floor", Box(middle, np.full(3, _SLAB)))
 
 
 def _report_names_given_twice(

@@ -15,6 +15,7 @@ from pydantic import (
     model_validator,
 )
 
+from synth.task.base_schema import BaseEntry
 from synth.task.entry_types import (
     MAPPING,
     TEXT,
@@ -28,15 +29,13 @@ from synth.task.entry_types import (
     absent,
     without_case,
 )
-from synth.task.model import Objective, Topology
+from synth.task.model import Floor, Objective, Topology
 from synth.task.robot_schema import RobotEntry  # noqa: TC001 - pydantic reads the annotation
 
 
-class BaseEntry(Strict):
-    """Where the robot stands in the task frame."""
-
-    position: Position = Field(default=[0.0, 0.0, 0.0], description="[x, y, z] of P1")
-    yaw_deg: Angle = Field(default=0.0, description="rotation about the vertical")
+def _at_base() -> Any:
+    """Return what the floor is where the key is absent, which null does not mean."""
+    return Floor.AT_BASE
 
 
 class TargetEntry(Strict):
@@ -151,7 +150,10 @@ class TaskFile(Strict):
         Discriminator(lambda value: {str: TEXT, dict: MAPPING}.get(type(value))),
     ] = Field(description="a preset's name, the path of a robot file, or a mapping")
     base: BaseEntry = Field(default_factory=BaseEntry, description="where the robot stands in the task frame")
-    floor: Coordinate | None = Field(default=0.0, description="height in the base frame; null: no floor")
+    floor: Coordinate | None = Field(
+        default_factory=_at_base,
+        description="height in the task frame; null: no floor; absent: that of an upright base",
+    )
     topology: Annotated[Topology, Field(strict=False), BeforeValidator(without_case)] = Field(
         default=Topology.ANY, description="kind of shape"
     )

@@ -11,7 +11,6 @@ import numpy as np
 from synth.export.sheet.labels import FONT_SIZE
 from synth.export.sheet.typesetting import shortened
 from synth.geometry import Box
-from synth.robot import BasePose
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -78,7 +77,7 @@ def solid_outline(solid: Solid, view: tuple[int, int]) -> FloatArray:
     around = np.column_stack([np.cos(angles), np.sin(angles)])
     if isinstance(solid, Box):
         half = np.array(list(itertools.product((-0.5, 0.5), repeat=3))) * solid.size
-        points = (BasePose(yaw=solid.yaw).to_task(half) + solid.centre)[:, list(view)]
+        points = (half @ solid.axes.T + solid.centre)[:, list(view)]
         radius = 0.0
     else:
         points, radius = solid.ends[:, list(view)], solid.radius

@@ -94,7 +94,7 @@ class Scene:
             reached=reached,
             labels=labels,
             base=1e3 * base.to_task([[0.0, 0.0, 0.0], [0.0, 0.0, task.robot.d12]]),
-            floor=None if task.floor is None else 1e3 * (task.floor + base.position[2]),
+            floor=None if task.floor_height is None else 1e3 * task.floor_height,
             obstacles=[],
             far_obstacles=[],
             hold=hold,

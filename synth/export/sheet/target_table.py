@@ -52,7 +52,7 @@ def target_table(page: Page, x: float, y: float, solution: Solution) -> float:
     heads = [("miss", 56.0), ("of, mm", 68.0)]
     if solution.found:
         heads.append(("joints 1, 2, °", 93.0))
-        heads += [("clear, mm", 110.0)] if task.obstacles else []
+        heads += [("clear, mm", 110.0)] if task.solids else []
     for head, column in heads:
         page.text(x + column, y, head, 7.0, ha="right", color="#555555")
     for row, index in enumerate(listed, start=1):

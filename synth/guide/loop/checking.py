@@ -115,7 +115,7 @@ def best_joints(arm: StandingArm, task: Task, planned: FloatArray) -> FloatArray
     misses = [
         np.linalg.norm(arm.forward(joints) - task.positions_in_base, axis=-1) for joints in (near, closest)
     ]
-    other = misses[1] < misses[0] - (np.inf if task.obstacles else _MUCH_BETTER)
+    other = misses[1] < misses[0] - (np.inf if task.solids else _MUCH_BETTER)
     return np.where(other[:, None], closest, near)
 
 

@@ -2,7 +2,7 @@
 
 from synth.robot.hardware.about_axis_1 import into_turn, turned
 from synth.robot.hardware.hardware import JointLimits, MalleableLink, RigidLink, Robot, no_triangle
-from synth.robot.hardware.interval import Interval
+from synth.robot.hardware.interval import Interval, check_interval
 from synth.robot.hardware.presets import PRESETS
 
 __all__ = [
@@ -12,6 +12,7 @@ __all__ = [
     "MalleableLink",
     "RigidLink",
     "Robot",
+    "check_interval",
     "into_turn",
     "no_triangle",
     "turned",

@@ -54,8 +54,8 @@ def why_impossible(task: Task) -> tuple[str, ...]:
         One sentence for each target or limit that makes the task impossible.
     """
     reasons = []
-    if task.floor is not None and task.floor > task.robot.d12:
-        reasons.append(f"the link starts at P2, {at_least(task.floor - task.robot.d12)} below the floor")
+    if (too_deep := task.lowest_from(task.base) - task.robot.d12) > 0.0:
+        reasons.append(f"the link starts at P2, {at_least(too_deep)} below the floor")
     reasons += _in_the_way(task)
     longest = longest_rigid_link(task.robot)
     positions, tolerances, targets = task.positions_in_base, task.tolerances, task.targets
@@ -63,7 +63,7 @@ def why_impossible(task: Task) -> tuple[str, ...]:
     far = _perhaps_out_of_reach(task, longest)
     seen = positions[far] - np.array([0.0, 0.0, task.robot.d12])
     beyond[far] = -LinkReach(task.robot.link).margin(seen)
-    floor = -math.inf if task.floor is None else task.floor
+    floor = task.lowest_from(task.base)
     out_of_reach = beyond > longest + tolerances + _ROUNDING
     sunk = positions[:, 2] < floor - tolerances
     for index in np.flatnonzero(out_of_reach | sunk).tolist():
@@ -91,7 +91,7 @@ def _in_the_way(task: Task) -> list[str]:
     reasons = []
     rod_radius = 0.5 * task.robot.rigid_link.diameter
     p2 = np.array([0.0, 0.0, task.robot.d12])
-    for obstacle, solid in zip(task.obstacles, task.solids, strict=True):
+    for obstacle, solid in zip(task.obstacles_from(task.base), task.solids, strict=True):
         depth = -float(solid.distance(p2))
         if depth > _ROUNDING:
             reasons.append(f"the link starts at P2, {at_least(depth)} inside {obstacle.name}")

@@ -97,7 +97,7 @@ class Limits:
     @property
     def lowest_end(self) -> float:
         """Lowest height of the link's end, with the tube about it above the floor, m."""
-        floor = self.task.floor
+        floor = self.task.floor_in_base
         return -math.inf if floor is None else floor + 0.5 * self.link.diameter
 
     @property
@@ -116,7 +116,7 @@ class Limits:
         Returns:
             Shape (N,); False is a proof.
         """
-        robot, floor = self.task.robot, self.task.floor
+        robot, floor = self.task.robot, self.task.floor_in_base
         rho, h = boxes.middle[:, 0], boxes.middle[:, 1]
         radius = boxes.end_radius
         allowed = self.table.upper_bound(rho, h - robot.d12) >= -radius - SLACK

@@ -43,7 +43,7 @@ class MissBounds:
     def __init__(self, task: Task, targets: NDArray[np.intp], factors: FloatArray) -> None:
         robot = task.robot
         self.limits = Limits.of(task)
-        self.floor = -math.inf if task.floor is None else task.floor
+        self.floor = task.lowest_from(task.base)
         self.factors = factors
         offset, radius = robot.end_effector_circle(robot.rigid_link.d35.lower, robot.rigid_link.d45.lower)
         x, y, z = task.positions_in_base[targets].T

@@ -177,7 +177,7 @@ def _left_out(task: Task) -> tuple[str, ...]:
     words = []
     if turn < _WHOLE_TURN:
         words.append(f"that joint 1 turns by {rounded_up(turn, Unit.DEG, 0)} deg only")
-    if task.obstacles:
+    if task.solids:
         words.append("the obstacles")
     if task.topology is not Topology.ANY:
         words.append(f"that the shape shall be {task.topology.value}")

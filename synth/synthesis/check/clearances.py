@@ -70,7 +70,7 @@ def chosen_joints(
 def _misses(task: Task, arm: Arm, candidates: FloatArray, targets: FloatArray) -> FloatArray:
     """Return the misses at joint angles of shape (k, n, 2), shape (k, n), m; infinite below the floor."""
     points = arm.forward_kinematics(candidates[..., 0], candidates[..., 1])
-    floor = -math.inf if task.floor is None else task.floor
+    floor = task.lowest_from(arm.base)
     sunk = arm.base.to_base(points)[..., 2] - ArmBody(arm).rod_radius < floor - LENGTH_SLACK
     return np.where(sunk, np.inf, np.linalg.norm(points - targets, axis=-1))
 
@@ -130,8 +130,8 @@ class Clearances:
 
 
 def seen_by(task: Task, arm: Arm) -> tuple[Solid, ...]:
-    """Return the obstacles of a task in the base frame of an arm, wherever that stands."""
-    return tuple(obstacle.solid.seen_from(arm.base.position, arm.base.yaw) for obstacle in task.obstacles)
+    """Return what a task wants the arm to keep clear of in the base frame of an arm, wherever that stands."""
+    return task.solids_from(arm.base)
 
 
 def clear_of_everything(task: Task, arm: Arm, joints: FloatArray) -> NDArray[np.bool_]:

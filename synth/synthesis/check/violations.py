@@ -15,7 +15,7 @@ from synth.task import Task, Topology
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
-    from synth.robot import BasePose, Interval
+    from synth.robot import Interval
 
 _ANGLE_SLACK = 1e-6  # what rounding may do, rad
 
@@ -48,13 +48,13 @@ def violations(
         room: The room about the arm there.
     """
     return (
-        *_base_violations(task.base, arm.base),
+        *_base_violations(task, arm),
         *_length_violations(arm),
         *_bend_violations(arm),
         *_joint_violations(arm, joints),
         *_floor_violations(task, arm, arm.base.to_base(reached)[:, 2]),
         *_topology_violations(task, arm),
-        *_obstacle_violations(task, room),
+        *_obstacle_violations(task, arm, room),
         *_self_violations(task, room),
     )
 
@@ -71,19 +71,24 @@ def _outside(interval: Interval, values: FloatArray | float) -> float:
     return float(np.max(np.maximum(interval.lower - values, values - interval.upper), initial=-math.inf))
 
 
-def _base_violations(asked: BasePose, stands: BasePose) -> list[Violation]:
+def _base_violations(task: Task, arm: Arm) -> list[Violation]:
+    asked, stands = task.base, arm.base
     moved = float(np.linalg.norm(stands.position - asked.position))
-    turned = abs(math.remainder(stands.yaw - asked.yaw, 2.0 * math.pi))
-    return [
+    turned = stands.turned_from(asked)
+    violations = [
         *_exceeds(
             "base: position", moved, 0.0, LENGTH_SLACK,
             f"the arm stands {1e3 * moved:.4g} mm from where the task puts it",
         ),
         *_exceeds(
-            "base: yaw", turned, 0.0, _ANGLE_SLACK,
+            "base: turn", turned, 0.0, _ANGLE_SLACK,
             f"the arm stands turned by {math.degrees(turned):.4g} deg from how the task puts it",
         ),
     ]  # fmt: skip
+    if task.places is not None and not task.places.contains(asked):
+        sentence = "the base stands where the task does not allow it"
+        violations.append(Violation("base: place", math.inf, sentence))
+    return violations
 
 
 def _length_violations(arm: Arm) -> list[Violation]:
@@ -138,7 +143,8 @@ def _joint_violations(arm: Arm, joints: FloatArray) -> list[Violation]:
 
 
 def _floor_violations(task: Task, arm: Arm, end_effector: FloatArray) -> list[Violation]:
-    if task.floor is None:
+    floor = task.lowest_from(arm.base)
+    if floor == -math.inf:
         return []
     body = ArmBody(arm)
     heights = {
@@ -148,7 +154,7 @@ def _floor_violations(task: Task, arm: Arm, end_effector: FloatArray) -> list[Vi
     }
     violations = []
     for part, height in heights.items():
-        depth = task.floor - height
+        depth = floor - height
         violations += _exceeds(
             f"floor: {part}", depth, 0.0, LENGTH_SLACK,
             f"the {part} would be {rounded_up(depth, digits=2)} mm below the floor",
@@ -175,14 +181,14 @@ def _topology_violations(task: Task, arm: Arm) -> list[Violation]:
     )
 
 
-def _obstacle_violations(task: Task, room: Clearances) -> list[Violation]:
+def _obstacle_violations(task: Task, arm: Arm, room: Clearances) -> list[Violation]:
     """Check that tube and rod keep clear of the obstacles at each target: one violation for each."""
     violations = []
     least = room.from_obstacles.min(axis=(-2, -1), initial=math.inf)
     for index in np.flatnonzero(~(least >= -LENGTH_SLACK)).tolist():
         clearances = room.from_obstacles[index]
         worst, part = np.unravel_index(np.argmin(clearances), clearances.shape)
-        obstacle, depth = task.obstacles[worst].name, -float(clearances[worst, part])
+        obstacle, depth = task.obstacles_from(arm.base)[worst].name, -float(clearances[worst, part])
         violations += _exceeds(
             f"obstacle: {obstacle}", depth, 0.0, LENGTH_SLACK,
             f"at {task.table.names[index]} the {('malleable', 'rigid')[part]} link would be "

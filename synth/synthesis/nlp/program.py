@@ -149,7 +149,7 @@ class SynthesisNlp:
             KeyboardInterrupt: The user interrupted the solver (which swallows the exception).
         """
         weights = task.weights / task.tolerances**2 / _unit(task, start, joints)
-        floor, steepest = task.floor or 0.0, 2.0 * _LARGE_MISS * _OVERLAP_UNIT * float(weights.max())
+        floor, steepest = task.floor_in_base or 0.0, 2.0 * _LARGE_MISS * _OVERLAP_UNIT * float(weights.max())
         parameters = np.concatenate([task.positions_in_base.T.ravel(), weights, [floor, steepest]])
         values, status, iterations = self._ipopt.solve(
             self._x.vector_of(packed(task, start, joints, self._overlaps, weights)), parameters, watch

@@ -1,12 +1,14 @@
 """Start points: shapes at random, led to the targets, the most promising first."""
 
+from synth.synthesis.starts.columns import ARCS
 from synth.synthesis.starts.exact_arms import exact_arms, nearest_to_exact_arms
 from synth.synthesis.starts.overlaps import overlaps
 from synth.synthesis.starts.postures import Postures, TargetsSeen
 from synth.synthesis.starts.refined import Refined, relative_weights
 from synth.synthesis.starts.refinement import level, refine
 from synth.synthesis.starts.screening import estimated_misses
-from synth.synthesis.starts.shapes import ARCS, ARM_LENGTH, Shapes, in_equal_arcs, into_limits
+from synth.synthesis.starts.shape_limits import into_limits
+from synth.synthesis.starts.shapes import ARM_LENGTH, Shapes, in_equal_arcs
 from synth.synthesis.starts.start_points import Start, start_points
 from synth.synthesis.starts.thinning import thinned
 from synth.synthesis.starts.turned_arms import (

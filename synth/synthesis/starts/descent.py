@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,13 +12,14 @@ from synth.synthesis.starts.overlaps import overlaps
 from synth.synthesis.starts.postures import Postures, TargetsSeen
 from synth.synthesis.starts.refined import Refined, relative_weights
 from synth.synthesis.starts.residuals import Residuals
-from synth.synthesis.starts.shapes import Shapes, free_directions, into_limits
+from synth.synthesis.starts.shape_limits import free_directions
 from synth.task import Objective
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from synth.arrays import FloatArray
+    from synth.synthesis.starts.shapes import Shapes
     from synth.task import Task
 
 # After so many steps each target may take the nearer branch of joint 2, wherever it is.
@@ -68,7 +70,7 @@ class Descent:
                 break
             last = iteration == iterations - 1
             if not (keep_branches or last) and (iteration + 1) % _STEPS_ON_BRANCHES == 0:
-                nearest = Postures.nearest(self._aims, self._shapes.kinematics)
+                nearest = Postures.nearest(self._seen_by(self._shapes), self._shapes.kinematics)
                 self._postures = nearest.where(nearest.squared < self._postures.squared, self._postures)
                 self._cost = self._cost_of(self._shapes, self._postures)
         return Refined(self._shapes, self._postures.joints, self._cost)
@@ -94,6 +96,9 @@ class Descent:
         exponents = _EXPONENTS[self._task.objective]
         share = max(share, exponents[1][0]) if near and len(exponents) > 1 else share
         return next(exponent for since, exponent in reversed(exponents) if since <= share)
+
+    def _seen_by(self, shapes: Shapes) -> TargetsSeen:
+        return self._aims if shapes.places is None else TargetsSeen.by(self._task, shapes)
 
     def _measure_by(self, exponent: float) -> None:
         if exponent != self._exponent:
@@ -138,7 +143,7 @@ class Descent:
         off = category_offsets(self._task, self._shapes)
         slope[:, :6] += np.einsum("nki,nk->ni", by_end, off)
 
-        robot, motion = self._shapes.robot, self._shapes.motion
+        motion = self._shapes.motion
         by_unknowns = motion.transpose(0, 2, 1)
         by_unknown, curvature = (by_unknowns @ slope[..., None])[..., 0], by_unknowns @ curvature @ motion
         if self._clear:
@@ -146,11 +151,12 @@ class Descent:
             by_unknown += np.einsum("ntk,nt->nk", deeper, depth) / depth.shape[1]
             curvature += deeper.transpose(0, 2, 1) @ deeper / depth.shape[1]
         step = _damped_step(self._shapes, curvature, by_unknown, self._damping)
-        moved = Shapes(robot, into_limits(robot, self._shapes.unknowns + step))
+        moved = self._shapes.moved(step)
         second = self._aims.limits.second
         # By how much joint 2 follows is only known to first order; joint 1 is at its best in any case.
         theta2 = self._postures.theta2 + residuals.following((motion @ step[..., None])[..., 0])
-        postures = Postures.at(self._aims, moved.kinematics, np.clip(theta2, second.lower, second.upper))
+        aims = self._seen_by(moved)
+        postures = Postures.at(aims, moved.kinematics, np.clip(theta2, second.lower, second.upper))
         cost = self._cost_of(moved, postures)
         if self._clear and self._is_up():
             return  # not all obstacles were looked at
@@ -175,10 +181,10 @@ class Descent:
                 break
             moved = here.unknowns[deep]
             moved[:, unknown] += _DIFFERENCE
-            shapes = Shapes(here.robot, moved)
+            shapes = replace(here, unknowns=moved)
             theta2 = self._postures.theta2 + residuals.following(_DIFFERENCE * motion[..., unknown])
             theta2 = np.clip(theta2[deep], second.lower, second.upper)
-            joints = Postures.at(self._aims, shapes.kinematics, theta2).joints
+            joints = Postures.at(self._seen_by(shapes), shapes.kinematics, theta2).joints
             changed = overlaps(self._task, shapes, joints, margin=_MARGIN, is_up=self._is_up)
             deeper[deep, :, unknown] = (changed - depth[deep]) / _DIFFERENCE
         return depth, deeper

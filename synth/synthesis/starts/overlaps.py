@@ -46,13 +46,16 @@ def overlaps(
     end = tube[:, None, -1]
     rod = shapes.kinematics.each_target().forward(0.0, joints[..., 1]) - end
     depth = np.maximum(*_self_overlaps(shapes, end, rod, margin))
-    if not task.solids:
+    solids = task.solids if shapes.places is None else task.solids_in_task
+    if not solids:
         return depth
     theta1 = joints[..., 0, None]
     # Between the ends of the pieces, the middles of their chords serve, too.
     tube = np.concatenate([tube, 0.5 * (tube[:, 1:] + tube[:, :-1])], axis=1)
     tube = turned(np.broadcast_to(tube[:, None], (*depth.shape, *tube.shape[1:])), theta1)
     ends = turned(np.stack(np.broadcast_arrays(end, end + rod), axis=-2), theta1)
+    if shapes.places is not None:
+        tube, ends = shapes.in_task(tube), shapes.in_task(ends)
     # What no link reaches is in the way of none.
     reach = (
         float(shapes.length.max(initial=0.0))
@@ -60,8 +63,10 @@ def overlaps(
         + max(radii)
         + margin
     )
-    near = [solid for solid in task.solids if solid.distance(np.array([0.0, 0.0, robot.d12])) < reach]
-    for solid in near:
+    p2 = np.array([[0.0, 0.0, robot.d12]])
+    if shapes.places is not None:
+        p2 = shapes.in_task(np.broadcast_to(p2, (len(depth), 3)))
+    for solid in (solid for solid in solids if solid.distance(p2).min(initial=np.inf) < reach):
         if is_up():
             break
         depth = np.maximum(depth, radii[0] + margin - solid.distance(tube).min(axis=-1))

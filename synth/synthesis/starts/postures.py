@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.robot import JointLimits, Kinematics
+    from synth.synthesis.starts.shapes import Shapes
+    from synth.task import Task
 
 _NEWTON_STEPS = 2
 _FARTHEST_STEP = 0.3  # rad
@@ -36,22 +38,29 @@ class TargetsSeen:
     """Targets as joint 1 sees them, and the limits of the joints.
 
     Attributes:
-        positions: Targets in the base frame, shape (n, 3), m.
+        positions: Targets in the base frame, shape (n, 3), m; or in those of N bases, shape (N, n, 3).
         limits: Limits of both joints.
     """
 
     positions: FloatArray
     limits: JointLimits
 
+    @classmethod
+    def by(cls, task: Task, shapes: Shapes) -> TargetsSeen:
+        """Return the targets of a task as shapes see them, each from its own base if that is free."""
+        free = shapes.places is not None
+        positions = shapes.seen(task.table.positions) if free else task.positions_in_base
+        return cls(positions, task.robot.joint_limits)
+
     @cached_property
     def radial(self) -> FloatArray:
-        """Distances from axis 1, shape (n,), m."""
-        return np.hypot(self.positions[:, 0], self.positions[:, 1])
+        """Distances from axis 1, shape (n,) or (N, n), m."""
+        return np.hypot(self.positions[..., 0], self.positions[..., 1])
 
     @cached_property
     def azimuth(self) -> FloatArray:
-        """Angles about axis 1, shape (n,), rad."""
-        return np.arctan2(self.positions[:, 1], self.positions[:, 0])
+        """Angles about axis 1, shape (n,) or (N, n), rad."""
+        return np.arctan2(self.positions[..., 1], self.positions[..., 0])
 
 
 @compared_by_value
@@ -104,7 +113,7 @@ class Postures:
             [
                 radial - aims.radial * np.cos(beyond),
                 -aims.radial * np.sin(beyond),
-                point[2] - aims.positions[:, 2],
+                point[2] - aims.positions[..., 2],
             ]
         )
         tangent = np.stack([x * along[0] + y * along[1], x * along[1] - y * along[0], along[2]])

@@ -76,12 +76,12 @@ def _descents(
     clear: bool = False,
 ) -> Refined:
     """Return shapes after their descents, led a part of them at a time."""
-    aims = TargetsSeen(task.positions_in_base, task.robot.joint_limits)
-    together = max(1, _TOGETHER // len(task.positions_in_base))
+    together = max(1, _TOGETHER // len(task.targets))
     parts = []
     for first in range(0, len(shapes.length), together):
         some = slice(first, first + together)
         part = shapes.take(some)
+        aims = TargetsSeen.by(task, part)
         if theta2 is None:
             postures = Postures.nearest(aims, part.kinematics)
         else:

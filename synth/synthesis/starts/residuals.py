@@ -9,7 +9,7 @@ import numpy as np
 from synth.synthesis.starts.postures import dot
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
@@ -41,6 +41,7 @@ class Residuals:
 
     def __init__(self, shapes: Shapes, postures: Postures, limits: Interval) -> None:
         self._postures = postures
+        self._base_is_free = shapes.places is not None
         frame, position = shapes.end
         self._lever = postures.point - position.T[..., None]
         self._circle = None
@@ -62,7 +63,7 @@ class Residuals:
         """Return how far joint 2 follows the link's ends, to first order, shape (N, n), rad.
 
         Args:
-            moved: How the ends and circles move, shape (N, 6 or 8).
+            moved: How the ends, circles and bases move, as the rows of `Shapes.motion`, shape (N, k).
         """
         slopes = self._slopes(self._along)
         along = dot(self._along, self._postures.miss) + np.einsum("nti,ni->nt", slopes, moved)
@@ -70,7 +71,7 @@ class Residuals:
         return np.asarray(np.clip(step, -_FARTHEST_STEP, _FARTHEST_STEP))
 
     def normal_equations(self, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return J^T W J, shape (N, k, k), and J^T W r, shape (N, k), by the motions of ends and circles.
+        """Return J^T W J, shape (N, k, k), and J^T W r, shape (N, k), by the motions of ends, circles and bases.
 
         Args:
             weights: Of the squared misses, shape (N, n).
@@ -108,7 +109,7 @@ class Residuals:
             yield np.tile([[0.0], [1.0], [0.0]], len(owner)), (owner, target)
 
     def _slopes(self, direction: FloatArray, some: _Pairs | None = None) -> FloatArray:
-        """Return how P5 moves along directions, by the motions of ends and circles, shape (..., 6 or 8)."""
+        """Return how P5 moves along directions, by the rows of `Shapes.motion`, shape (..., k)."""
 
         def of(array: FloatArray) -> FloatArray:
             return array if some is None else array[:, some[0], some[1]]
@@ -120,4 +121,22 @@ class Residuals:
         columns = [x, y, z, ay * z - az * y, az * x - ax * z, ax * y - ay * x]
         if self._circle is not None:
             columns += [dot(np.stack([x, y, z]), of(by)) for by in self._circle]
+        if self._base_is_free:
+            columns += self._by_base(np.stack([x, y, z]), of)
         return np.stack(columns, axis=-1)
+
+    def _by_base(
+        self, direction: FloatArray, of: Callable[[FloatArray], FloatArray]
+    ) -> list[FloatArray]:
+        """Return how P5 leaves its target along directions as the base shifts and turns, in its own frame."""
+        cos, sin = of(self._postures.outward)
+        outward, around, up = of(self._postures.miss)
+        off = np.stack([outward * cos - around * sin, outward * sin + around * cos, up])
+        target = of(self._postures.point) - off
+        turned = np.cross(target, direction, axis=0)  # as if joint 1 stood at zero
+        (theta1,) = of(self._postures.theta1[None])
+        c, s = np.cos(theta1), np.sin(theta1)
+        columns = []
+        for x, y, z in (direction, turned):
+            columns += [c * x - s * y, s * x + c * y, z]
+        return columns

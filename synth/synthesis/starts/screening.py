@@ -10,10 +10,11 @@ import numpy as np
 from synth.synthesis.starts.category_offsets import category_offsets
 from synth.synthesis.starts.refined import relative_weights
 from synth.synthesis.starts.shapes import Shapes
+from synth.task import Floor
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
-    from synth.robot import Robot
+    from synth.robot import BaseRange, Robot
     from synth.task import Task
 
 _SHAPES = 20_000
@@ -29,6 +30,17 @@ def shapes_at_random(robot: Robot, floor: float | None, seed: int) -> Shapes:
     """
     shapes = Shapes.sample(robot, _SHAPES, np.random.default_rng([seed, 0]))
     return shapes if floor is None else shapes.take(shapes.end[1][:, 2] > floor)
+
+
+def shapes_at_places(task: Task, places: BaseRange, seed: int) -> Shapes:
+    """Return random shapes as `shapes_at_random`, each at a random place of the base, above the floor there."""
+    rng = np.random.default_rng([seed, 2])
+    upright = not places.bounds[:, 3:5].any()
+    lowest = 0.0 if upright and isinstance(task.floor, Floor) else None
+    shapes = shapes_at_random(task.robot, lowest, seed).at_places(places, rng)
+    if not isinstance(task.floor, float):
+        return shapes
+    return shapes.take(shapes.in_task(shapes.end[1])[:, 2] > task.floor)
 
 
 def estimated_misses(task: Task, shapes: Shapes) -> FloatArray:
@@ -54,7 +66,8 @@ def estimated_misses(task: Task, shapes: Shapes) -> FloatArray:
     determinant = np.abs(m00 * m11 - m01 * m10)
     squared = np.einsum("ij,ij->i", centre, centre) + radius**2
     misses = np.empty((len(task.targets), len(radius)))
-    for row, (x, y, z) in enumerate(task.positions_in_base):
+    positions = task.positions_in_base if shapes.places is None else shapes.seen(task.table.positions)
+    for row, (x, y, z) in enumerate(np.moveaxis(positions, (-2, -1), (0, 1))):
         height = z - centre[:, 2]
         beyond = x * x + y * y + z * z - squared
         a = m11 * height - m01 * beyond

@@ -9,22 +9,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.geometry import rotation_of
 from synth.robot import ArcChains, Arm, BasePose, Kinematics, LinkShape, chain_end, chain_points
+from synth.synthesis.starts.columns import ARCS, BASE, BASE_NUMBERS, CURVATURES, D35, D45, LENGTH
+from synth.synthesis.starts.shape_limits import free_lengths, into_limits
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from synth.robot import Interval, Robot
+    from synth.robot import BaseRange, Robot
 
-_AT_LIMIT = 1e-9
-_EQUAL, _TINY = 1e-12, 1e-300  # the first of the whole length
+_EQUAL = 1e-12  # of the whole length: by so little arcs of one length may differ
 _LEAST_RADIUS = 1e-3  # m; with P3, P4, P5 in line the radius has no derivative
 ARM_LENGTH = 0.5  # m; an axis 1 rad off puts P5 about this far off
-ARCS = 4  # equal arcs of a link: eight curvatures and a length for the five numbers of an end pose
-# The columns of the unknowns; d35 and d45 are there where the rigid link is free.
-CURVATURES, LENGTH, _D35, _D45 = slice(0, 2 * ARCS), 2 * ARCS, 2 * ARCS + 1, 2 * ARCS + 2
 
 
 @compared_by_value
@@ -34,12 +33,15 @@ class Shapes:
 
     Attributes:
         robot: The hardware.
-        unknowns: Shape (..., 9), or (..., 11) where the rigid link is free: the curvatures (kx, ky)
-            of the ARCS equal arcs in units of the largest one, the length, m, and d35 and d45, m.
+        unknowns: Shape (..., 9), with two more where the rigid link is free and six more where the base is:
+            the curvatures (kx, ky) of the ARCS equal arcs in units of the largest one, the length, m; d35 and
+            d45, m; x, y, z, m, and roll, pitch and yaw of the base, rad.
+        places: Where the base may stand, if it is free.
     """
 
     robot: Robot
     unknowns: FloatArray
+    places: BaseRange | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "unknowns", frozen(self.unknowns))
@@ -56,8 +58,14 @@ class Shapes:
         bend = np.sqrt(rng.uniform(size=(size, ARCS)))
         direction = rng.uniform(0.0, 2.0 * np.pi, (size, ARCS))
         curvatures = np.stack([bend * np.cos(direction), bend * np.sin(direction)], axis=-1)
-        lengths = [rng.uniform(each.lower, each.upper, size) for each in _lengths(robot)]
-        return cls(robot, into_limits(robot, np.column_stack([curvatures.reshape(size, -1), *lengths])))
+        lengths = [rng.uniform(each.lower, each.upper, size) for each in free_lengths(robot)]
+        unknowns = np.column_stack([curvatures.reshape(size, -1), *lengths])
+        return cls(robot, into_limits(robot, unknowns, None))
+
+    def at_places(self, places: BaseRange, rng: np.random.Generator) -> Shapes:
+        """Return the shapes, each with the base at a random one of its places."""
+        rows = places.sample(len(self.length), rng)
+        return Shapes(self.robot, np.concatenate([self.unknowns, rows], axis=-1), places)
 
     @classmethod
     def of(cls, arm: Arm) -> Shapes:
@@ -83,7 +91,26 @@ class Shapes:
         rigid = self.robot.rigid_link
         if rigid.is_fixed:
             return np.full(self.length.shape, rigid.d35.lower), np.full(self.length.shape, rigid.d45.lower)
-        return self.unknowns[..., _D35], self.unknowns[..., _D45]
+        return self.unknowns[..., D35], self.unknowns[..., D45]
+
+    @property
+    def base(self) -> FloatArray:
+        """The base's x, y, z, roll, pitch and yaw where it is free, shape (..., 6), m and rad."""
+        return self.unknowns[..., BASE]
+
+    @cached_property
+    def base_rotation(self) -> FloatArray:
+        """Rotations from the base frames to the task frame where the base is free, shape (..., 3, 3)."""
+        return rotation_of(*np.moveaxis(self.base[..., 3:], -1, 0))
+
+    def seen(self, points: FloatArray) -> FloatArray:
+        """Return points of the task frame, shape (n, 3), m, in each base's own frame, shape (..., n, 3)."""
+        return np.asarray((points - self.base[..., None, :3]) @ self.base_rotation)
+
+    def in_task(self, points: FloatArray) -> FloatArray:
+        """Return points of the base frames, shape (N, ..., 3), m, in the task frame."""
+        flat = points.reshape(len(points), -1, 3) @ np.swapaxes(self.base_rotation, -1, -2)
+        return np.asarray((flat + self.base[:, None, :3]).reshape(points.shape))
 
     @property
     def bending(self) -> FloatArray:
@@ -107,8 +134,33 @@ class Shapes:
         """How the unknowns move the link's end and the circle of P5, shape (N, 6 or 8, unknowns).
 
         Rows: the shift of the end; its turn, as a rotation vector; where the rigid link is free, the
-        changes of the circle's offset along axis 2 and of its radius. For one leading axis.
+        changes of the circle's offset along axis 2 and of its radius; where the base is free, its shift and
+        its turn, in its own frame. For one leading axis.
         """
+        if self.places is None:
+            return self._motion_of_arm
+        arm, base = self._motion_of_arm, self._motion_of_base
+        whole = np.zeros((len(arm), arm.shape[1] + BASE_NUMBERS, self.unknowns.shape[1]))
+        whole[:, :-BASE_NUMBERS, :-BASE_NUMBERS], whole[:, -BASE_NUMBERS:, BASE] = arm, base
+        return whole
+
+    @property
+    def _motion_of_base(self) -> FloatArray:
+        """How the base moves in its own frame by its six numbers, shape (N, 6, 6)."""
+        turn, (_, pitch, yaw) = self.base_rotation, np.moveaxis(self.base[:, 3:], -1, 0)
+        zero = np.zeros_like(yaw)
+        about = [
+            rotation_of(zero, pitch, yaw)[..., 0],
+            rotation_of(zero, zero, yaw)[..., 1],
+            np.broadcast_to([0.0, 0.0, 1.0], (len(yaw), 3)),
+        ]
+        motion = np.zeros((len(yaw), 6, 6))
+        motion[:, :3, :3] = np.swapaxes(turn, -1, -2)
+        motion[:, 3:, 3:] = np.swapaxes(turn, -1, -2) @ np.stack(about, axis=-1)
+        return motion
+
+    @property
+    def _motion_of_arm(self) -> FloatArray:
         robot, link, root = self.robot, self.robot.link, np.sqrt(ARCS)
         share = root * (self.length / link.length.middle - 1.0)
         ends = ArcChains(link, ARCS).ends(np.column_stack([self.unknowns[:, CURVATURES], share]))
@@ -123,7 +175,7 @@ class Shapes:
         by_d35 = np.stack([d35 / robot.d34, d35 * (1.0 - along) / radius], axis=-1)
         by_d45 = np.stack([-d45 / robot.d34, d45 * along / radius], axis=-1)
         whole = np.zeros((len(motion), 8, motion.shape[2] + 2))
-        whole[:, :6, : LENGTH + 1], whole[:, 6:, _D35], whole[:, 6:, _D45] = motion, by_d35, by_d45
+        whole[:, :6, : LENGTH + 1], whole[:, 6:, D35], whole[:, 6:, D45] = motion, by_d35, by_d45
         return whole
 
     @cached_property
@@ -142,33 +194,39 @@ class Shapes:
 
     def take(self, chosen: NDArray[np.intp] | NDArray[np.bool_] | slice) -> Shapes:
         """Return some of the shapes."""
-        return Shapes(self.robot, self.unknowns[chosen])
+        return replace(self, unknowns=self.unknowns[chosen])
 
-    @classmethod
-    def joined(cls, parts: Sequence[Shapes]) -> Shapes:
+    @staticmethod
+    def joined(parts: Sequence[Shapes]) -> Shapes:
         """Return the shapes of all parts, of one robot at least, in order."""
-        return cls(parts[0].robot, np.concatenate([part.unknowns for part in parts]))
+        return replace(parts[0], unknowns=np.concatenate([part.unknowns for part in parts]))
 
     def varied(self, sizes: Sequence[float], lengths: float, rng: np.random.Generator) -> Shapes:
         """Return the shapes bent at random by a little or more, within the limits.
 
         Args:
             sizes: Of the bends, in units of the largest curvature; each shape gets one of them.
-            lengths: By how much lengths change beside that, m.
+            lengths: By how much lengths change beside that, m; and the numbers of the base, m and rad.
             rng: Source of randomness.
         """
         size = rng.choice(sizes, (len(self.unknowns), 1)) * np.ones(self.unknowns.shape)
         size[:, LENGTH:] *= lengths
-        return Shapes(self.robot, into_limits(self.robot, self.unknowns + size * rng.normal(size=size.shape)))
+        return self.moved(size * rng.normal(size=size.shape))
+
+    def moved(self, by: FloatArray) -> Shapes:
+        """Return the shapes after steps of their unknowns, brought into the limits."""
+        return replace(self, unknowns=into_limits(self.robot, self.unknowns + by, self.places))
 
     def where(self, mine: NDArray[np.bool_], other: Shapes) -> Shapes:
         """Return these shapes where a mask, shape (N,), says so, and others elsewhere."""
-        return Shapes(self.robot, np.where(mine[:, None], self.unknowns, other.unknowns))
+        return replace(self, unknowns=np.where(mine[:, None], self.unknowns, other.unknowns))
 
     def arm(self, index: int, base: BasePose) -> Arm:
-        """Return one shape as a robot that stands at `base`."""
+        """Return one shape as a robot that stands at `base`, or where it says itself."""
         shape = LinkShape(self.curvatures[index], np.full(ARCS, self.length[index] / ARCS))
         d35, d45 = self.rigid_links
+        if self.places is not None:
+            base = self.places.pose(self.base[index])
         return Arm(self.robot, shape, float(d35[index]), float(d45[index]), base)
 
 
@@ -179,72 +237,3 @@ def in_equal_arcs(arm: Arm) -> Arm:
         return arm
     chains = ArcChains(arm.robot.link, ARCS)
     return replace(arm, shape=chains.shape(chains.into_limits(chains.row(arm.shape)[None])[0]))
-
-
-def into_limits(robot: Robot, unknowns: FloatArray) -> FloatArray:
-    """Return unknowns moved into the limits of the hardware: lengths, bend radius, total bend.
-
-    Args:
-        robot: The hardware.
-        unknowns: As in `Shapes`, shape (..., 9) or (..., 11).
-    """
-    unknowns = np.array(unknowns)
-    link, rigid = robot.link, robot.rigid_link
-    unknowns[..., LENGTH] = np.clip(unknowns[..., LENGTH], link.length.lower, link.length.upper)
-    curvatures = unknowns[..., CURVATURES].reshape(*unknowns.shape[:-1], ARCS, 2)
-    bends = np.linalg.norm(curvatures, axis=-1)
-    shrink = 1.0 / np.maximum(bends, 1.0)
-    total = np.sum(bends * shrink, axis=-1) * unknowns[..., LENGTH] * link.max_curvature / ARCS
-    shrink = shrink / np.maximum(total / max(link.max_total_bend, 1e-12), 1.0)[..., None]
-    unknowns[..., CURVATURES] = (curvatures * shrink[..., None]).reshape(*unknowns.shape[:-1], 2 * ARCS)
-    if not rigid.is_fixed:
-        # P3, P4, P5 must make a triangle: |d35 - d34| <= d45 <= d35 + d34.
-        d35 = np.clip(unknowns[..., _D35], rigid.d35.lower, rigid.d35.upper)
-        d35 = np.clip(d35, rigid.d45.lower - robot.d34, rigid.d45.upper + robot.d34)
-        d45 = np.clip(unknowns[..., _D45], np.abs(d35 - robot.d34), d35 + robot.d34)
-        unknowns[..., _D35], unknowns[..., _D45] = d35, np.clip(d45, rigid.d45.lower, rigid.d45.upper)
-    return unknowns
-
-
-def free_directions(shapes: Shapes, slope: FloatArray) -> FloatArray:
-    """Return projections onto the directions in which shapes may move, shape (N, unknowns, unknowns).
-
-    A limit that is reached, and beyond which a slope leads, takes away its normal.
-
-    Args:
-        shapes: Shapes within their limits, of shape (N,).
-        slope: Slopes of what is to become less, shape (N, unknowns).
-    """
-    robot, x, count = shapes.robot, shapes.unknowns, len(slope)
-    free = np.tile(np.eye(x.shape[1]), (count, 1, 1))
-    curvatures = x[:, CURVATURES].reshape(count, ARCS, 2)
-    bends = np.linalg.norm(curvatures, axis=-1)
-    bent = curvatures / np.maximum(bends, _TINY)[..., None]
-    tighter = np.einsum("nai,nai->na", slope[:, CURVATURES].reshape(count, ARCS, 2), bent) < 0.0
-    tightest = tighter & (bends >= 1.0 - _AT_LIMIT)
-    for arc in range(ARCS):
-        mine = slice(2 * arc, 2 * arc + 2)
-        normal = bent[:, arc] * tightest[:, arc, None]
-        free[:, mine, mine] -= normal[:, :, None] * normal[:, None, :]
-    for unknown, interval in enumerate(_lengths(robot), start=LENGTH):
-        shorter, longer = slope[:, unknown] > 0.0, slope[:, unknown] < 0.0
-        shortest = x[:, unknown] <= interval.lower + _AT_LIMIT
-        longest = x[:, unknown] >= interval.upper - _AT_LIMIT
-        free[:, unknown, unknown] -= (shorter & shortest) | (longer & longest)
-    total = bends.sum(axis=1)
-    normal = np.zeros(x.shape)
-    normal[:, CURVATURES] = (bent * shapes.length[:, None, None]).reshape(count, -1)
-    normal[:, LENGTH] = total
-    normal = (free @ normal[..., None])[..., 0]
-    squared = np.einsum("ni,ni->n", normal, normal)
-    most = robot.link.max_total_bend * ARCS / robot.link.max_curvature
-    held = (total * shapes.length >= most - _AT_LIMIT) & (squared > _AT_LIMIT)
-    held &= np.einsum("ni,ni->n", slope, normal) < 0.0  # it would bend more
-    free -= (held / np.maximum(squared, _TINY))[:, None, None] * normal[:, :, None] * normal[:, None, :]
-    return free
-
-
-def _lengths(robot: Robot) -> list[Interval]:
-    """Return the limits of the unknowns that are lengths, m."""
-    rigid = robot.rigid_link
-    return [robot.link.length] if rigid.is_fixed else [robot.link.length, rigid.d35, rigid.d45]

@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import compared_by_value
+from synth.robot import BaseRange
 from synth.synthesis.starts.exact_arms import exact_arms, nearest_to_exact_arms
 from synth.synthesis.starts.refined import relative_weights
-from synth.synthesis.starts.screening import screened, shapes_at_random
+from synth.synthesis.starts.screening import screened, shapes_at_places, shapes_at_random
 from synth.synthesis.starts.thinning import thinned
 from synth.synthesis.starts.turned_arms import as_it_is_and_turned
 from synth.synthesis.starts.valleys import Valleys
@@ -100,7 +101,10 @@ def start_points(
 
 def _starts(task: Task, seed: int, rng: np.random.Generator, watch: Watch, *, quick: bool) -> Iterator[Start]:
     """Yield start points for a task of few targets, each step with more effort than the one before."""
-    shapes = shapes_at_random(task.robot, task.floor, seed)
+    if isinstance(task.places, BaseRange):
+        shapes = shapes_at_places(task, task.places, seed)
+    else:
+        shapes = shapes_at_random(task.robot, task.floor_in_base, seed)
     if not len(shapes.length):
         return
     cost = screened(task, shapes)
@@ -111,7 +115,7 @@ def _starts(task: Task, seed: int, rng: np.random.Generator, watch: Watch, *, qu
         return rng.choice(order[:most], min(count, most, len(order)), replace=False)
 
     first = np.union1d(order[: _REFINED // 2], drawn(_REFINED // 2, _GOOD))
-    if designs := exact_arms(task):
+    if task.places is None and (designs := exact_arms(task)):
         first = np.union1d(first, nearest_to_exact_arms(shapes, designs, _PER_DESIGN))
     valleys, distinct = Valleys.of(task, shapes.take(first), watch), _Distinct(task)
     if not (quick or valleys.agreed):
@@ -129,28 +133,31 @@ class _Distinct:
 
     def __init__(self, task: Task) -> None:
         self._task = task
-        self._poses, self._costs = np.empty((0, 6)), np.empty(0)
+        self._poses: list[FloatArray] = []
+        self._costs: list[float] = []
         self._kinds = Counter[float]()
 
     def of(self, refined: Refined) -> Iterator[Start]:
         """Yield starts in the order of their costs, m^2, except those that are nearly one yielded before."""
         shapes, base, yielded = refined.shapes, self._task.base, 0
-        poses = shapes.poses
+        poses = shapes.poses if shapes.places is None else np.hstack([shapes.poses, shapes.base])
         as_good = min(_SETTLED, _SETTLED_PART * float(self._task.tolerances.min())) ** 2
         cost = np.maximum(refined.cost, as_good)
         # Shapes that miss alike are mostly one surface, bent in several ways.
         kinds = np.round(np.log(cost) / _ALIKE)
         for index in np.lexsort([shapes.bending, cost]):
             kind, settled = float(kinds[index]), cost[index] <= as_good
-            near = np.linalg.norm(self._poses - poses[index], axis=1) < _DISTINCT
-            no_better = cost[index] >= (1.0 - _BETTER) * self._costs
-            if np.any(near & no_better) or (
+            is_near_a_better_one = any(
+                np.linalg.norm(pose - poses[index]) < _DISTINCT and cost[index] >= (1.0 - _BETTER) * before
+                for pose, before in zip(self._poses, self._costs, strict=True)
+            )
+            if is_near_a_better_one or (
                 not settled and self._kinds[kind] >= _OF_A_KIND[self._task.objective]
             ):
                 continue
             self._kinds[kind] += 1
-            self._poses = np.vstack([self._poses, poses[index]])
-            self._costs = np.append(self._costs, cost[index])
+            self._poses.append(poses[index])
+            self._costs.append(float(cost[index]))
             yield Start(shapes.arm(index, base), refined.joints[index], float(refined.cost[index]))
             yielded += 1
             if yielded == _MOST_STARTS[self._task.objective]:

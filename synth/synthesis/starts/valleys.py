@@ -60,7 +60,6 @@ _LEVELLED = 48  # valleys whose least worst miss is looked for
 
 
 @compared_by_value
-@compared_by_value
 @dataclass(frozen=True, eq=False)
 class Valleys:
     """What is known of the valleys of a task.

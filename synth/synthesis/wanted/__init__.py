@@ -5,7 +5,7 @@ from synth.synthesis.wanted.displaced import Displacements, misses_displaced, ro
 from synth.synthesis.wanted.forgiveness import HAND_PLACES, HAND_TURNS, Forgiveness, hand_forgiveness
 from synth.synthesis.wanted.judging import judged
 from synth.synthesis.wanted.motion import Motion
-from synth.synthesis.wanted.ranking import best_of, leaves_no_wish, objective
+from synth.synthesis.wanted.ranking import best_of, leaves_no_wish, objective, preferred_designs
 from synth.synthesis.wanted.wanted_shapes import wished
 from synth.synthesis.wanted.ways import MOST_MOTIONS, motions
 
@@ -24,6 +24,7 @@ __all__ = [
     "misses_displaced",
     "motions",
     "objective",
+    "preferred_designs",
     "rotations",
     "wished",
 ]

@@ -124,7 +124,7 @@ def swings_of(joints: FloatArray) -> FloatArray:
 
 def _over_floor(task: Task, shapes: Shapes, joints: FloatArray) -> NDArray[np.bool_]:
     """Return which shapes stay over the floor, link, joint 2 and end effector, at samples of the link."""
-    if task.floor is None:
+    if task.floor_in_base is None:
         return np.ones(len(joints), dtype=np.bool_)
     robot, (frame, end) = task.robot, shapes.end
     link = shapes.centreline[:, :, 2].min(axis=1) - 0.5 * robot.link.diameter
@@ -132,4 +132,4 @@ def _over_floor(task: Task, shapes: Shapes, joints: FloatArray) -> NDArray[np.bo
     axis = (end[:, 2, None] + along * frame[:, 2, 0, None]).min(axis=1)
     tip = shapes.kinematics.each_target().forward(0.0, joints[..., 1])[..., 2].min(axis=1)
     lowest = np.minimum(np.minimum(link, axis), tip - 0.5 * robot.rigid_link.diameter)
-    return np.asarray(lowest >= task.floor)
+    return np.asarray(lowest >= task.floor_in_base)

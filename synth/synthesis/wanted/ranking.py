@@ -150,6 +150,11 @@ def best_of(task: Task, designs: Sequence[Design], is_up: Callable[[], bool] = n
     return tuple(judged(task, design, is_up) for design in _distinct(near))
 
 
+def preferred_designs(designs: Sequence[Design]) -> NDArray[np.intp]:
+    """Return the order of designs that were judged and reach every target, maybe of different bases."""
+    return preferred(np.array([_row(design.figures) for design in designs if design.figures is not None]))
+
+
 def _stand_beside(table: FloatArray, best: FloatArray, less_margin: float) -> NDArray[np.bool_]:
     """Return which shapes are alternatives to the best one: with all its ways, and nearly its margins."""
     return np.asarray((table[:, 0] <= best[0]) & (table[:, 1] <= best[1] + less_margin))

@@ -104,7 +104,7 @@ class _Surroundings:
         self._limits = task.robot.joint_limits
         self._solids: list[Solid] = list(seen_by(task, design.arm))
         # For the rod only: joint 1 keeps all heights, so the tube stays where it is over the floor.
-        self._floor = -np.inf if task.floor is None else task.floor
+        self._floor = task.lowest_from(task.base)
 
     def ways(self, postures: Sequence[FloatArray]) -> list[dict[tuple[int, int], FloatArray]]:
         """Return for each target but the last a way from each of its postures to each of the next target's.

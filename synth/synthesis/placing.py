@@ -1,0 +1,148 @@
+"""Where the base should stand: the search over its places, before the search for shapes at the one chosen.
+
+Shapes and the pose of the base are refined together, many at once; each start then stands somewhere, and from
+there on the task is one whose base is given. So nothing behind this module knows of a base that is free.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from itertools import islice
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.robot import BaseChoices, BaseRange
+from synth.rounding import rounded_up
+from synth.synthesis.many_targets import part_of
+from synth.synthesis.run import Run
+from synth.synthesis.starts import Start, start_points
+from synth.synthesis.wanted import best_of, objective, preferred_designs
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from synth.robot import BasePose
+    from synth.synthesis.wanted import Design
+    from synth.task import Task
+    from synth.watch import Watch
+
+_TRIED = 12  # start points, each with its own place, until a shape reaches every target there
+# A place is told in round numbers where that will do: to so much, m and rad, the coarsest first.
+_ROUND = ((1e-3, math.radians(0.1)), (1e-4, math.radians(0.01)))
+
+
+def placed(task: Task, seed: int, watch: Watch, alternatives: int) -> Run:
+    """Search for the place of the base, and for shapes there.
+
+    Args:
+        task: The task, whose base is free.
+        seed: Seed of the random shapes and places.
+        watch: Its time.
+        alternatives: As for `solve`.
+
+    Returns:
+        The run at the place chosen: its shapes are found, and it can be proven and told.
+    """
+    if isinstance(task.places, BaseChoices):
+        run = _of_choices(task, task.places, seed, watch)
+    else:
+        run = _in_range(task, seed, watch)
+    run.places = task.places
+    with run.kept(), watch.keeping_back(run.kept_back):
+        run.search.look_beside(alternatives)
+    return run
+
+
+def _of_choices(task: Task, places: BaseChoices, seed: int, watch: Watch) -> Run:
+    """Search at each place, and choose the one whose best shape is wanted most."""
+    runs = []
+    for pose in places.poses:
+        run = _run_at(task, pose, seed, watch)
+        with run.kept(), watch.keeping_back(run.kept_back):
+            run.search.run()
+        runs.append(run)
+        if watch.is_up():
+            break
+    chosen = _best(runs)
+    others = [run for run in runs if run is not chosen]
+    chosen.elsewhere = not all(run.is_impossible for run in others) or len(runs) < len(places.poses)
+    chosen.notes += [_told(run, places) for run in others]
+    return chosen
+
+
+def _in_range(task: Task, seed: int, watch: Watch) -> Run:
+    """Refine shapes and places together, and stay at the first place where a shape reaches every target."""
+    part, runs = part_of(task, seed), []
+    for start in islice(start_points(part, seed, watch=watch), _TRIED):
+        runs.append(_started(task, start, seed, watch))
+        if runs[-1].search.polishing.found or watch.is_up():
+            break
+    if not runs:
+        return _run_at(task, task.base, seed, watch)
+    best = _best(runs)
+    best.elsewhere = True
+    if best.search.polishing.found:
+        best = _at_round_numbers(task, best, seed, watch)
+    return best
+
+
+def _run_at(task: Task, base: BasePose, seed: int, watch: Watch) -> Run:
+    there = task.standing_at(base)
+    return Run(there, part_of(there, seed), seed, watch, alternatives=0)
+
+
+def _started(task: Task, start: Start, seed: int, watch: Watch) -> Run:
+    """Return a run where a start point stands, which is polished."""
+    run = _run_at(task, start.arm.base, seed, watch)
+    with run.kept(), watch.keeping_back(run.kept_back):
+        run.search.begin(start)
+    return run
+
+
+def _at_round_numbers(task: Task, run: Run, seed: int, watch: Watch) -> Run:
+    """Return a run at a place nearby that can be told in round numbers, if a shape does it there, too."""
+    design = next(design for design in run.search.polishing.designs if design.verification.found)
+    for grid in _ROUND:
+        base = _rounded(task, design.arm.base, *grid)
+        arm = replace(design.arm, base=base)
+        joints, _ = arm.closest_joints(run.part.table.positions)
+        there = _started(task, Start(arm, joints), seed, watch)
+        if there.search.polishing.found:
+            return there
+        if watch.is_up():
+            break
+    return run
+
+
+def _rounded(task: Task, base: BasePose, length: float, angle: float) -> BasePose:
+    assert isinstance(task.places, BaseRange)  # noqa: S101 - for the type checker
+    row = np.array([*base.position, base.roll, base.pitch, base.yaw])
+    steps = np.repeat([length, angle], 3)
+    return task.places.pose(task.places.into_limits(np.round(row / steps) * steps))
+
+
+def _best(runs: list[Run]) -> Run:
+    """Return the run that reaches every target with the shape that is wanted most, or misses least."""
+    found = [run for run in runs if run.search.polishing.found]
+    if found:
+        best = [best_of(run.part, run.search.polishing.designs)[0] for run in found]
+        return found[preferred_designs(best)[0]]
+    with_shape = [run for run in runs if run.search.polishing.designs]
+    return min(with_shape or runs, key=lambda run: min(_objectives(run), default=math.inf))
+
+
+def _objectives(run: Run) -> Iterator[float]:
+    return (objective(run.task, design) for design in run.search.polishing.designs)
+
+
+def _told(run: Run, places: BaseChoices) -> str:
+    """Return a sentence on what was found at a place that was not chosen."""
+    name, designs = places.name_of(run.task.base), run.search.polishing.designs
+    if run.search.polishing.found:
+        return f"at {name} every target is reached, too, by a shape that is less wanted"
+    if not designs:
+        return f"at {name} no shape was found that the hardware can take"
+    worst = min(float(np.max(design.verification.misses)) for design in designs)
+    return f"at {name} the best shape found misses by {rounded_up(worst, digits=2)} mm"
