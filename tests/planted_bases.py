@@ -25,9 +25,7 @@ def planted_base(seed: int, count: int = 8, leaning: float = 0.0) -> tuple[Task,
         if len(points) == count:
             break
     base = places.pose(places.sample(1, rng)[0])
-    targets = [
-        PointTarget(f"target {i + 1}", point, 0.5e-3) for i, point in enumerate(base.to_task(points))
-    ]
+    targets = [PointTarget(f"target {i + 1}", point, 0.5e-3) for i, point in enumerate(base.to_task(points))]
     floor = {} if leaning == 0.0 else {"floor": None}
     return Task(f"planted base {seed}", ROBOT, targets, places=places, **floor), base
 

@@ -56,7 +56,9 @@ def test_seen_from_another_frame_nothing_moves(solid):
     position = np.array([0.3, -0.2, 0.5])
     turned = rotation_of(0.0, 0.0, 0.7) @ rotation_of(0.9, -0.4, 0.0)
     there = (POINTS - position) @ turned
-    assert solid.seen_from(position, turned).distance(there) == pytest.approx(solid.distance(POINTS), abs=1e-12)
+    assert solid.seen_from(position, turned).distance(there) == pytest.approx(
+        solid.distance(POINTS), abs=1e-12
+    )
 
 
 def test_on_the_axis_of_a_capsule_outward_is_across_it():

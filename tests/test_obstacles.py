@@ -82,7 +82,8 @@ def test_obstacles_stand_in_the_task_frame():
     targets = tuple(replace(t, position=base.to_task(t.position)) for t in task.targets)
     # The solid as seen from the frame whose own pose seen from the base is the base's inverse.
     obstacles = tuple(
-        replace(o, solid=o.solid.seen_from(base.to_base(np.zeros(3)), base.rotation.T)) for o in task.obstacles
+        replace(o, solid=o.solid.seen_from(base.to_base(np.zeros(3)), base.rotation.T))
+        for o in task.obstacles
     )
     moved = replace(task, base=base, targets=targets, obstacles=obstacles)
     there = Arm(arm.robot, arm.shape, arm.d35, arm.d45, base)

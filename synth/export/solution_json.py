@@ -200,4 +200,5 @@ def _guide(guide: Guide) -> dict[str, object]:
         ],
         "tolerance": guide.tolerance if guide.met else None,
         "forgiveness": guide.forgiveness,
+        "base": guide.place,
     }

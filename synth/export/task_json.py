@@ -24,6 +24,7 @@ def task_to_json(task: Task) -> dict[str, object]:
         "name": task.name,
         "robot": _robot(task.robot),
         "base": task.base,
+        "places": task.places,
         "floor": task.floor_height,
         "topology": task.topology.value,
         "objective": task.objective.value,
@@ -75,7 +76,9 @@ def _interval(interval: Interval) -> list[float]:
 def _obstacle(obstacle: Obstacle) -> dict[str, object]:
     solid = obstacle.solid
     if isinstance(solid, Box):
-        box = {key: getattr(solid, key) for key in ("size", "yaw", "pitch", "roll")} | {"center": solid.centre}
+        box = {key: getattr(solid, key) for key in ("size", "yaw", "pitch", "roll")} | {
+            "center": solid.centre
+        }
         return {"name": obstacle.name, "box": box}
     start, end = solid.ends
     if np.array_equal(start, end):

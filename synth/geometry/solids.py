@@ -167,11 +167,12 @@ class Box:
 
     def seen_from(self, position: FloatArray, rotation: FloatArray) -> Box:
         """Return the same solid in a frame at `position`, shape (3,), m, turned by a matrix, (3, 3)."""
-        return Box((self.centre - position) @ rotation, self.size, *roll_pitch_yaw(rotation.T @ self.axes)[::-1])
+        return Box(
+            (self.centre - position) @ rotation, self.size, *roll_pitch_yaw(rotation.T @ self.axes)[::-1]
+        )
 
     def _inside_frame(self, points: FloatArray) -> FloatArray:
         return np.asarray((points - self.centre) @ self.axes)
 
 
 Solid = Sphere | Box | Capsule
-

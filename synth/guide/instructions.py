@@ -16,7 +16,7 @@ from synth.synthesis import HAND_PLACES, HAND_TURNS
 
 if TYPE_CHECKING:
     from synth.guide.markers import Guide
-    from synth.robot import BasePose, LinkShape
+    from synth.robot import LinkShape
     from synth.synthesis import Forgiveness
 
 _STRAIGHT = 100.0  # m, a bend radius that no eye and no hand can tell from none
@@ -64,11 +64,22 @@ def cut_sentence(d35: float, d45: float) -> str:
     )
 
 
-def base_sentence(base: BasePose) -> str:
-    """Return where the robot stands."""
+def base_sentence(guide: Guide) -> str:
+    """Return where the robot stands; where that was chosen, as what to do, and how precisely."""
+    base, place = guide.arm.base, guide.place
     x, y, z = 1e3 * base.position
-    yaw = math.degrees(base.yaw)
-    return f"The base stands with P1 at ({x:z.1f}, {y:z.1f}, {z:z.1f}) mm, turned by {yaw:z.1f} deg."
+    digits = 1 if place is None else 2
+    roll, pitch, yaw = (math.degrees(angle) for angle in (base.roll, base.pitch, base.yaw))
+    turned = f"turned by {yaw:z.{digits}f} deg"
+    if base.roll or base.pitch:
+        turned = f"roll, pitch, yaw {roll:z.{digits}f}, {pitch:z.{digits}f}, {yaw:z.{digits}f} deg"
+    where = f"with P1 at ({x:z.1f}, {y:z.1f}, {z:z.1f}) mm, {turned}"
+    if place is None:
+        return f"The base stands {where}."
+    at = f"at {place.name}, " if place.name else ""
+    off = f"{rounded_down(place.position, digits=2)} mm"
+    by = f"{rounded_down(place.turn, Unit.DEG, 2)} deg"
+    return f"Place the base {at}{where}; it may be {off} or {by} off if nothing else is."
 
 
 def hold_sentence(guide: Guide) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 
 from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.checks import refuse_unless
+from synth.guide.base_place import BasePlace, base_place
 from synth.guide.posture import HoldPosture, hold_posture
 from synth.guide.sensitivity import ShapeTolerance, shape_tolerance
 from synth.robot import BasePose
@@ -82,6 +83,7 @@ class Guide:
         tolerance: How precisely axis 2 must stand; NaN for a task that is not met.
         forgiveness: What becomes of the task when a hand as published bends the link; None if it is not met.
         ways: How the arm gets from each target to the next; empty if it is not met, or of many targets.
+        place: Where the base was chosen to stand, and how precisely; None if the task says it or is missed.
     """
 
     posture: HoldPosture
@@ -93,6 +95,7 @@ class Guide:
     tolerance: ShapeTolerance
     forgiveness: Forgiveness | None
     ways: tuple[Motion, ...]
+    place: BasePlace | None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "stations", frozen(self.stations))
@@ -142,6 +145,7 @@ def _guide(task: Task, design: Design) -> Guide:
     if check.found:
         forgiveness = figures.forgiveness if figures else hand_forgiveness(task, arm, check.joints)
     return Guide(
+        place=base_place(task, design),
         posture=posture,
         hold=place(arm, stations, posture.joint1),
         stations=stations,

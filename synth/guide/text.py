@@ -185,7 +185,7 @@ def _bullet(line: str) -> str:
 def _steps(guide: Guide) -> list[str]:
     """Return the steps without what stands in the summary already."""
     told = [] if guide.forgiveness is None else [hand_sentence(guide.forgiveness)]
-    return [base_sentence(guide.arm.base), *(step for step in instructions(guide) if step not in told)]
+    return [base_sentence(guide), *(step for step in instructions(guide) if step not in told)]
 
 
 def _shape_bullets(guide: Guide) -> list[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -16,6 +15,8 @@ from synth.robot.base_pose import BasePose
 from synth.robot.hardware import Interval, check_interval, into_turn
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
 _ZERO = Interval(0.0, 0.0)

@@ -51,7 +51,9 @@ class BasePose:
     @property
     def is_upright(self) -> bool:
         """Whether axis 1 is vertical and points up."""
-        return bool(np.hypot(self.rotation[0, 2], self.rotation[1, 2]) < _UPRIGHT and self.rotation[2, 2] > 0.0)
+        return bool(
+            np.hypot(self.rotation[0, 2], self.rotation[1, 2]) < _UPRIGHT and self.rotation[2, 2] > 0.0
+        )
 
     def to_task(self, points: ArrayLike) -> FloatArray:
         """Turn points of the base frame, shape (..., 3), into points of the task frame."""

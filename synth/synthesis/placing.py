@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from synth.robot import BasePose
-    from synth.synthesis.wanted import Design
     from synth.task import Task
     from synth.watch import Watch
 
@@ -128,7 +127,7 @@ def _best(runs: list[Run]) -> Run:
     found = [run for run in runs if run.search.polishing.found]
     if found:
         best = [best_of(run.part, run.search.polishing.designs)[0] for run in found]
-        return found[preferred_designs(best)[0]]
+        return found[int(preferred_designs(best)[0])]
     with_shape = [run for run in runs if run.search.polishing.designs]
     return min(with_shape or runs, key=lambda run: min(_objectives(run), default=math.inf))
 

@@ -27,9 +27,7 @@ def _kind(value: object) -> str:
 CoordinateOrRange = Annotated[
     Annotated[Coordinate, Tag(ONE)] | Annotated[Pair[Coordinate], Tag(RANGE)], Discriminator(_kind)
 ]
-AngleOrRange = Annotated[
-    Annotated[Angle, Tag(ONE)] | Annotated[AngleRange, Tag(RANGE)], Discriminator(_kind)
-]
+AngleOrRange = Annotated[Annotated[Angle, Tag(ONE)] | Annotated[AngleRange, Tag(RANGE)], Discriminator(_kind)]
 _Angles = Annotated[list[Angle], Field(min_length=3, max_length=3)]
 
 
@@ -38,8 +36,12 @@ class ChoiceEntry(Strict):
 
     name: Name = Field(default_factory=absent, description="how the result speaks of it")
     position: Position = Field(default=[0.0, 0.0, 0.0], description="[x, y, z] of P1")
-    rpy_deg: _Angles = Field(default_factory=absent, description="[roll, pitch, yaw] about the fixed axes x, y, z")
-    yaw_deg: Angle = Field(default_factory=absent, description="rotation about the vertical; y is rpy_deg: [0, 0, y]")
+    rpy_deg: _Angles = Field(
+        default_factory=absent, description="[roll, pitch, yaw] about the fixed axes x, y, z"
+    )
+    yaw_deg: Angle = Field(
+        default_factory=absent, description="rotation about the vertical; y is rpy_deg: [0, 0, y]"
+    )
 
     @model_validator(mode="after")
     def _turned_once(self) -> ChoiceEntry:
@@ -55,20 +57,23 @@ class BaseEntry(Strict):
     )
     rpy_deg: Annotated[list[AngleOrRange], Field(min_length=3, max_length=3)] = Field(
         default_factory=absent,
-        description="[roll, pitch, yaw] about the fixed axes x, y, z, in this order; each a number or [lo, hi]",
+        description="[roll, pitch, yaw] about the fixed axes x, y, z; each a number or [lo, hi]",
     )
     yaw_deg: AngleOrRange = Field(
         default_factory=absent, description="rotation about the vertical; y is rpy_deg: [0, 0, y]"
     )
     choices: Annotated[list[ChoiceEntry], Field(min_length=1)] = Field(
-        default_factory=absent, description="places of which one is chosen: name, position, rpy_deg or yaw_deg"
+        default_factory=absent,
+        description="places of which one is chosen: name, position, rpy_deg or yaw_deg",
     )
 
     @model_validator(mode="after")
     def _said_once(self) -> BaseEntry:
         _refuse_both(self.rpy_deg, self.yaw_deg)
         if self.choices is not None and self.model_fields_set - {"choices"}:
-            raise ValueError("has choices, so each of these says where the robot stands, and nothing beside them")
+            raise ValueError(
+                "has choices, so each of these says where the robot stands, and nothing beside them"
+            )
         return self
 
 

@@ -189,7 +189,7 @@ class Task:
 
     @property
     def solids_in_task(self) -> tuple[Solid, ...]:
-        """What the arm keeps clear of in the task frame, wherever the base stands; a floor of a height too."""
+        """What the arm keeps clear of in the task frame, a floor of a given height with it."""
         floor = [_slab(self.floor, self.base.position)] if isinstance(self.floor, float) else []
         return tuple(obstacle.solid for obstacle in (*self.obstacles, *floor))
 

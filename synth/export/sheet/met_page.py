@@ -33,7 +33,7 @@ def fill_met(page: Page, solution: Solution, guide: Guide) -> float:
     told, weight = f"Found: {ending(solution.status, solution.designs)}.", "bold" if missing else "normal"
     page.paragraph(MARGIN, 25.5, told, WIDTH - 2 * MARGIN, size=10.0, most=1, weight=weight)
     page.text(MARGIN, 31.0, f"Kind of shape: {guide.arm.category_distances.describe()}.", 7.5)
-    page.text(MARGIN, 35.5, base_sentence(guide.arm.base), 7.5)
+    page.text(MARGIN, 35.5, base_sentence(guide), 7.5)
     bottom = max(_points(page, guide), _steps(page, guide)) + 5.5
     return max(target_table(page, MARGIN, bottom, solution), _ways(page, bottom, guide)) + 5.5
 

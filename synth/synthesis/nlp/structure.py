@@ -31,4 +31,6 @@ class Structure:
     @classmethod
     def of(cls, task: Task) -> Structure:
         """Return the structure of a task."""
-        return cls(task.robot, len(task.targets), task.floor_in_base is not None, task.topology, task.objective)
+        return cls(
+            task.robot, len(task.targets), task.floor_in_base is not None, task.topology, task.objective
+        )

@@ -71,7 +71,7 @@ class Residuals:
         return np.asarray(np.clip(step, -_FARTHEST_STEP, _FARTHEST_STEP))
 
     def normal_equations(self, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return J^T W J, shape (N, k, k), and J^T W r, shape (N, k), by the motions of ends, circles and bases.
+        """Return J^T W J, shape (N, k, k), and J^T W r, shape (N, k), by the rows of `Shapes.motion`.
 
         Args:
             weights: Of the squared misses, shape (N, n).
@@ -125,9 +125,7 @@ class Residuals:
             columns += self._by_base(np.stack([x, y, z]), of)
         return np.stack(columns, axis=-1)
 
-    def _by_base(
-        self, direction: FloatArray, of: Callable[[FloatArray], FloatArray]
-    ) -> list[FloatArray]:
+    def _by_base(self, direction: FloatArray, of: Callable[[FloatArray], FloatArray]) -> list[FloatArray]:
         """Return how P5 leaves its target along directions as the base shifts and turns, in its own frame."""
         cos, sin = of(self._postures.outward)
         outward, around, up = of(self._postures.miss)

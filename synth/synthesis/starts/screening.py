@@ -33,7 +33,7 @@ def shapes_at_random(robot: Robot, floor: float | None, seed: int) -> Shapes:
 
 
 def shapes_at_places(task: Task, places: BaseRange, seed: int) -> Shapes:
-    """Return random shapes as `shapes_at_random`, each at a random place of the base, above the floor there."""
+    """Return random shapes, each with its base at a random place, the link's end above the floor there."""
     rng = np.random.default_rng([seed, 2])
     upright = not places.bounds[:, 3:5].any()
     lowest = 0.0 if upright and isinstance(task.floor, Floor) else None

@@ -90,6 +90,6 @@ def free_lengths(robot: Robot) -> list[Interval]:
 
 
 def _ends(shapes: Shapes) -> FloatArray:
-    """Return the least and the largest of all unknowns but the curvatures, shape (2, k); none of full turns."""
+    """Return the least and the largest of the unknowns behind the curvatures, shape (2, k)."""
     of_lengths = np.array([(each.lower, each.upper) for each in free_lengths(shapes.robot)]).T
     return of_lengths if shapes.places is None else np.hstack([of_lengths, shapes.places.ends])
