@@ -27,7 +27,10 @@ if TYPE_CHECKING:
     from synth.task import Task
     from synth.watch import Watch
 
-_TRIED = 12  # start points, each with its own place, until a shape reaches every target there
+# Start points, each with its own place, until a shape reaches every target there; and so many of those that
+# miss by more than the tolerances, the first of which promises the most.
+_TRIED, _TRIED_THAT_MISS = 12, 3
+_QUICK = 2  # start points at each of several places, before any place is searched thoroughly
 # A place is told in round numbers where that will do: to so much, m and rad, the coarsest first.
 _ROUND = ((1e-3, math.radians(0.1)), (1e-4, math.radians(0.01)))
 
@@ -56,17 +59,18 @@ def placed(task: Task, seed: int, watch: Watch, alternatives: int) -> Run:
 
 def _of_choices(task: Task, places: BaseChoices, seed: int, watch: Watch) -> Run:
     """Search at each place, and choose the one whose best shape is wanted most."""
-    runs = []
-    for pose in places.poses:
-        run = _run_at(task, pose, seed, watch)
-        with run.kept(), watch.keeping_back(run.kept_back):
-            run.search.run()
-        runs.append(run)
-        if watch.is_up():
+    runs = [_run_at(task, pose, seed, watch) for pose in places.poses]
+    for most in (_QUICK, None):
+        for run in runs:
+            with run.kept(), watch.keeping_back(run.kept_back):
+                run.search.run(most)
+            if watch.is_up():
+                break
+        if watch.is_up() or any(run.search.polishing.found for run in runs):
             break
     chosen = _best(runs)
     others = [run for run in runs if run is not chosen]
-    chosen.elsewhere = not all(run.is_impossible for run in others) or len(runs) < len(places.poses)
+    chosen.elsewhere = not all(run.is_impossible for run in others)
     chosen.notes += [_told(run, places) for run in others]
     return chosen
 
@@ -75,6 +79,8 @@ def _in_range(task: Task, seed: int, watch: Watch) -> Run:
     """Refine shapes and places together, and stay at the first place where a shape reaches every target."""
     part, runs = part_of(task, seed), []
     for start in islice(start_points(part, seed, watch=watch), _TRIED):
+        if start.cost > float(part.tolerances.max()) ** 2 and len(runs) == _TRIED_THAT_MISS:
+            break
         runs.append(_started(task, start, seed, watch))
         if runs[-1].search.polishing.found or watch.is_up():
             break

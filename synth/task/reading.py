@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from synth.checks import described
 from synth.errors import InputError, Mistake
-from synth.files import Document, KeyPath, read_file, read_text
+from synth.files import Document, KeyPath, key_text, read_file, read_text
 from synth.names import did_you_mean
 from synth.robot import PRESETS
 from synth.task.entry_types import SURFACES_TO_COME
@@ -148,8 +148,14 @@ def _task(document: Document, directory: Path, name: str) -> Task:
     content = document.value if isinstance(document.value, dict) else {}
     reference = content.get("robot")
     robot = named_robot(document, reference, directory) if isinstance(reference, str) else None
-    for key, kind in (("targets", "target"), ("obstacles", "obstacle")):
-        _report_names_given_twice(document, key, kind, content.get(key))
+    base = content.get("base")
+    choices = base.get("choices") if isinstance(base, dict) else None
+    for path, kind, entries in (
+        (("targets",), "target", content.get("targets")),
+        (("obstacles",), "obstacle", content.get("obstacles")),
+        (("base", "choices"), "place", choices),
+    ):
+        _report_names_given_twice(document, path, kind, entries)
     scan = _scan(document, content["surface"], directory) if "surface" in content else None
     document.see_the_time()
     file = validate(document, SurfaceTaskFile if "surface" in content else TaskFile)
@@ -220,12 +226,12 @@ def _adopt(document: Document, path: KeyPath, error: InputError) -> None:
             document.report(path, f"{mistake.file}: {mistake.message}")
 
 
-def _report_names_given_twice(document: Document, key: str, kind: str, entries: object) -> None:
+def _report_names_given_twice(document: Document, path: KeyPath, kind: str, entries: object) -> None:
     first: dict[str, int] = {}
     for index, entry in enumerate(entries if isinstance(entries, list) else []):
         name = entry.get("name", default_name(kind, index)) if isinstance(entry, dict) else None
         if not isinstance(name, str):
             continue
         if first.setdefault(name, index) != index:
-            message = f"{name[:40]!r} is the name of {key}[{first[name]}] already"
-            document.report((key, index, "name"), message)
+            message = f"{name[:40]!r} is the name of {key_text(path)}[{first[name]}] already"
+            document.report((*path, index, "name"), message)

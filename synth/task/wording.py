@@ -53,6 +53,7 @@ _SENTENCES_AT: dict[KeyPath, dict[str, str]] = {
         "must be 1, the only version of this format, but is {value}",
     ),
     ("targets",): {"too_short": "must hold one target at least, but is an empty list"},
+    ("base", "choices"): {"too_short": "must hold one place at least, but is an empty list"},
 }
 
 

@@ -16,7 +16,7 @@ from synth.synthesis.starts import (
 )
 from synth.synthesis.wanted.forgiveness import misses_after_a_hand
 from synth.synthesis.wanted.margins import Margins
-from synth.synthesis.wanted.ranking import preferences, preferred
+from synth.synthesis.wanted.ranking import CALM, preferences, preferred
 from synth.synthesis.wanted.ways import MOST_MOTIONS
 
 if TYPE_CHECKING:
@@ -40,10 +40,12 @@ class Pool:
     Attributes:
         shapes: The shapes, of shape (N,).
         table: Rows of `preferences`, shape (N, 6).
+        joints: Joint angles at the targets, shape (N, n, 2), rad.
     """
 
     shapes: Shapes
     table: FloatArray
+    joints: FloatArray
 
     @classmethod
     def of(
@@ -85,18 +87,26 @@ class Pool:
             swings.sum(axis=1),
             shapes.bending,
         )
-        return cls(shapes, table).sorted()
+        return cls(shapes, table, joints).sorted()
 
     def sorted(self) -> Pool:
         """Return the same, the most wanted first."""
         chosen = preferred(self.table)
-        return Pool(self.shapes.take(chosen), self.table[chosen])
+        return Pool(self.shapes.take(chosen), self.table[chosen], self.joints[chosen])
 
     def joined(self, other: Pool) -> Pool:
         """Return the shapes of both."""
         return Pool(
-            Shapes.joined([self.shapes, other.shapes]), np.concatenate([self.table, other.table])
+            Shapes.joined([self.shapes, other.shapes]),
+            np.concatenate([self.table, other.table]),
+            np.concatenate([self.joints, other.joints]),
         ).sorted()
+
+    @property
+    def must_swing(self) -> bool:
+        """Whether joint 1 swings far between the same two targets in all of the shapes."""
+        steps = np.abs(np.diff(self.joints[..., 0], axis=1))
+        return bool((steps.min(axis=0, initial=np.inf) > CALM).any())
 
     def distinct(self) -> NDArray[np.intp]:
         """Return which shapes differ from all that are wanted more."""

@@ -97,11 +97,12 @@ def _searched(
     """Return the shapes that are wanted most, with limits drawn in.
 
     While the best leaves ways, margins or calm to wish for, all is begun anew with joint 2 kept in a part of
-    its range, where no swing can be large: calm shapes are too rare to be met by chance.
+    its range, where no swing can be large: calm shapes are too rare to be met by chance. Where joint 1 has to
+    swing in all shapes seen, none can be calm.
     """
     pool = _bred(task, narrow, known, _LED, _ITERATIONS, rng, stop)
     for calmer in _calmer(narrow):
-        if stop() or not len(pool.table) or is_content(pool.table[0]):
+        if stop() or not len(pool.table) or is_content(pool.table[0]) or pool.must_swing:
             break
         pool = pool.joined(_bred(task, calmer, (), _LED_CALMER, _ITERATIONS_CALMER, rng, stop))
     if _is_tight(task) and len(pool.table):
