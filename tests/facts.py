@@ -104,9 +104,9 @@ def sweep(task, arm):
 def limits_broken(task, arm, joints):
     """Return the limits that an arm breaks in itself or at a target, as sentences."""
     solids = [obstacle.solid for obstacle in task.obstacles]
-    breaches = [*arm.breaches_of_shape(task.floor)]
+    breaches = [*arm.breaches_of_shape(task.floor_in_base)]
     for each in joints:
-        breaches += arm.breaches_at(each, task.floor, solids)
+        breaches += arm.breaches_at(each, task.floor_in_base, solids)
     told = [f"{breach.limit} broken by {breach.amount:.2e}" for breach in breaches]
     if not arm.is_topology(task.topology.value):
         told.append(f"not {task.topology.value}")

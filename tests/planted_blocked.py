@@ -139,7 +139,9 @@ def with_others_relaxed(task: Task, limit: str) -> Task:
         limits,
         **{k: Interval(i.lower - few, i.upper + few) for name, (k, i) in ranges.items() if name != limit},
     )
-    floor = task.floor if limit == "floor" or task.floor is None else task.floor - 0.01
+    floor = task.floor_height
+    if limit != "floor" and floor is not None:
+        floor -= 0.01
     return replace(task, robot=replace(task.robot, link=link, joint_limits=limits), floor=floor)
 
 

@@ -9,7 +9,7 @@ from planted import planted_task
 
 from synth.synthesis.bound.boxes import _CHARTS, Boxes
 from synth.synthesis.bound.misses import MissBounds
-from synth.synthesis.starts.shapes import Shapes, into_limits
+from synth.synthesis.shapes.shapes import Shapes, into_limits
 from synth.task import PointTarget, Task
 
 

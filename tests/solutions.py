@@ -42,7 +42,7 @@ def solution_document(task, designs):
                 "joint_limits": {"base": pair(limits.base), "second": pair(limits.second)},
             },
             "base": {"position": task.base.position.tolist(), "yaw": task.base.yaw},
-            "floor": task.floor,
+            "floor": task.floor_height,
             "topology": task.topology.value,
             "objective": task.objective.value,
             "targets": [

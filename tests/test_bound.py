@@ -19,7 +19,7 @@ from synth.synthesis.bound.contraction import contracted, hull_of_cells
 from synth.synthesis.bound.forms import Circle
 from synth.synthesis.bound.limits import Limits, ReachTable
 from synth.synthesis.bound.linear import combined, multipliers
-from synth.synthesis.starts.shapes import Shapes
+from synth.synthesis.shapes.shapes import Shapes
 from synth.watch import Watch
 
 

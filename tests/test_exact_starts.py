@@ -8,8 +8,8 @@ from planted import ROBOT, planted_task
 
 from synth.robot import Interval, RigidLink
 from synth.synthesis import Status, solve
+from synth.synthesis.shapes.shapes import Shapes
 from synth.synthesis.starts.exact_arms import exact_arms, nearest_to_exact_arms
-from synth.synthesis.starts.shapes import Shapes
 from synth.task import PointTarget, Task, Topology
 
 

@@ -208,7 +208,11 @@ def test_the_file_alone_rebuilds_the_task_and_the_shape_and_verifies_it():
     assert check.found == design.verification.found
     np.testing.assert_allclose(check.misses, design.verification.misses, atol=1e-12)
     np.testing.assert_allclose(check.clearances, design.verification.clearances, atol=1e-12)
-    assert (again.topology, again.objective, again.floor) == (task.topology, task.objective, task.floor)
+    assert (again.topology, again.objective, again.floor_height) == (
+        task.topology,
+        task.objective,
+        task.floor_height,
+    )
 
 
 def test_the_task_of_a_file_with_its_present_shape_is_whole():

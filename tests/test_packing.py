@@ -11,7 +11,7 @@ from synth.robot import BasePose, RigidLink
 from synth.synthesis.nlp import Structure, SynthesisNlp
 from synth.synthesis.nlp.packing import packed, unpacked
 from synth.synthesis.nlp.planes import Separation
-from synth.synthesis.starts import ARCS, in_equal_arcs
+from synth.synthesis.shapes import ARCS, in_equal_arcs
 from synth.task import Objective, PointTarget, Task
 
 BASE = BasePose([0.1, -0.2, 0.3], 0.7)

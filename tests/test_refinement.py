@@ -9,14 +9,14 @@ from planted import ROBOT, noisy, planted_task
 
 from synth.geometry import Sphere
 from synth.robot import BasePose, Interval, JointLimits, RigidLink
-from synth.synthesis.starts.category_offsets import category_offsets, category_slopes
+from synth.synthesis.shapes.category_offsets import category_offsets, category_slopes
+from synth.synthesis.shapes.overlaps import overlaps
+from synth.synthesis.shapes.postures import Postures, TargetsSeen
+from synth.synthesis.shapes.shapes import Shapes, free_directions, in_equal_arcs, into_limits
 from synth.synthesis.starts.descent import _curvature_of_norm
-from synth.synthesis.starts.overlaps import overlaps
-from synth.synthesis.starts.postures import Postures, TargetsSeen
 from synth.synthesis.starts.refined import relative_weights
 from synth.synthesis.starts.refinement import cleared, level, refine
 from synth.synthesis.starts.residuals import Residuals
-from synth.synthesis.starts.shapes import Shapes, free_directions, in_equal_arcs, into_limits
 from synth.task import Objective, Obstacle, PointTarget, Topology
 
 FREE = replace(

@@ -23,12 +23,21 @@ ROOMS = {
         "synthesis.bound",
         "synthesis.check",
         "synthesis.nlp",
+        "synthesis.shapes",
         "synthesis.starts",
         "synthesis.wanted",
         "task",
     },
-    "synthesis.wanted": {"geometry", "robot", "synthesis.check", "synthesis.starts", "task"},
-    "synthesis.starts": {"geometry", "robot", "task"},
+    "synthesis.wanted": {
+        "geometry",
+        "robot",
+        "synthesis.check",
+        "synthesis.shapes",
+        "synthesis.starts",
+        "task",
+    },
+    "synthesis.starts": {"geometry", "robot", "synthesis.shapes", "task"},
+    "synthesis.shapes": {"geometry", "robot", "task"},
     "synthesis.nlp": {"geometry", "robot", "task"},
     "synthesis.bound": {"robot", "task"},
     "synthesis.check": {"geometry", "robot", "task"},
@@ -138,9 +147,9 @@ def test_files_import_one_another_in_no_circle():
 
 def test_circles_and_ways_past_doors_are_seen():
     assert circle({"a": ["b"], "b": ["c"], "c": ["a"]})
-    assert door_into("synthesis.starts.shapes", "guide") == "synthesis"
-    assert door_into("synthesis.starts.shapes", "synthesis") == "synthesis.starts"
-    assert door_into("synthesis.starts.shapes", "synthesis.nlp") == "synthesis.starts"
+    assert door_into("synthesis.shapes.shapes", "guide") == "synthesis"
+    assert door_into("synthesis.shapes.shapes", "synthesis") == "synthesis.shapes"
+    assert door_into("synthesis.shapes.shapes", "synthesis.nlp") == "synthesis.shapes"
     assert door_into("synthesis.search", "synthesis.starts") is None
     assert door_into("errors", "synthesis.starts") is None
 

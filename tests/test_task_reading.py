@@ -79,7 +79,7 @@ class TestRightFiles:
         task = load_task(write(tmp_path / "least.yaml", INLINE))
         assert task.name == "least"
         assert task.targets[0].name == "target 1"
-        assert (task.base.position.tolist(), task.base.yaw, task.floor) == ([0.0, 0.0, 0.0], 0.0, 0.0)
+        assert (task.base.position.tolist(), task.base.yaw, task.floor_height) == ([0.0, 0.0, 0.0], 0.0, 0.0)
         robot = task.robot
         assert (robot.name, robot.tip_offset, robot.joint_limits) == ("inline robot", 0.0245, JointLimits())
         assert robot.link == MalleableLink(Interval(0.55, 0.7), 0.11, diameter=0.0, max_total_bend=math.inf)

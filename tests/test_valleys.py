@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from planted import ROBOT, noisy, planted_task
 
+from synth.synthesis.shapes.shapes import Shapes
 from synth.synthesis.starts.refined import Refined
-from synth.synthesis.starts.shapes import Shapes
 from synth.synthesis.starts.start_points import start_points
 from synth.synthesis.starts.valleys import Valleys
 from synth.watch import Watch

@@ -11,8 +11,8 @@ from synth.synthesis import Status, all_targets, solve
 from synth.synthesis.all_targets import verified_in_time
 from synth.synthesis.check.verification import verify
 from synth.synthesis.run import Run
+from synth.synthesis.shapes.shapes import Shapes
 from synth.synthesis.starts.refinement import refine
-from synth.synthesis.starts.shapes import Shapes
 from synth.watch import Watch
 
 

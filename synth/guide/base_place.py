@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.geometry import rotation_of
-from synth.robot import BaseChoices
+from synth.robot import BaseChoices, BasePose
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -72,7 +71,7 @@ def base_place(task: Task, design: Design) -> BasePlace | None:
 
 def _turned(arm: Arm, targets: FloatArray, angle: float) -> FloatArray:
     """Return where targets are as seen by a base that is turned about each of its axes, both ways."""
-    turns = np.stack([rotation_of(*(angle * axis)) for axis in _AXES])
+    turns = np.stack([BasePose(np.zeros(3), *(angle * axis)).rotation for axis in _AXES])
     return arm.base.to_task(arm.base.to_base(targets) @ turns)
 
 

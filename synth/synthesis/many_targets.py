@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.synthesis.shapes import Shapes
 from synth.synthesis.starts import (
     SAMPLE,
     Refined,
-    Shapes,
     as_it_is_and_turned,
     level,
     random_part,

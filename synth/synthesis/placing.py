@@ -47,11 +47,13 @@ def placed(task: Task, seed: int, watch: Watch, alternatives: int) -> Run:
     Returns:
         The run at the place chosen: its shapes are found, and it can be proven and told.
     """
-    if isinstance(task.places, BaseChoices):
-        run = _of_choices(task, task.places, seed, watch)
+    places = task.places
+    assert places is not None, "the base is free"  # noqa: S101 - for the type checker
+    if isinstance(places, BaseChoices):
+        run = _of_choices(task, places, seed, watch)
     else:
-        run = _in_range(task, seed, watch)
-    run.places = task.places
+        run = _in_range(task, places, seed, watch)
+    run.places = places
     with run.kept(), watch.keeping_back(run.kept_back):
         run.search.look_beside(alternatives)
     return run
@@ -70,15 +72,17 @@ def _of_choices(task: Task, places: BaseChoices, seed: int, watch: Watch) -> Run
             break
     chosen = _best(runs)
     others = [run for run in runs if run is not chosen]
-    chosen.elsewhere = not all(run.is_impossible for run in others)
+    chosen.elsewhere = not all(run.impossible for run in others)
     chosen.notes += [_told(run, places) for run in others]
     return chosen
 
 
-def _in_range(task: Task, seed: int, watch: Watch) -> Run:
+def _in_range(task: Task, places: BaseRange, seed: int, watch: Watch) -> Run:
     """Refine shapes and places together, and stay at the first place where a shape reaches every target."""
-    part, runs = part_of(task, seed), []
-    for start in islice(start_points(part, seed, watch=watch), _TRIED):
+    part = part_of(task, seed)
+    runs: list[Run] = []
+    impossible = _is_out_of_reach(task, places)
+    for start in islice(start_points(part, seed, quick=impossible, watch=watch), _TRIED):
         if start.cost > float(part.tolerances.max()) ** 2 and len(runs) == _TRIED_THAT_MISS:
             break
         runs.append(_started(task, start, seed, watch))
@@ -87,9 +91,9 @@ def _in_range(task: Task, seed: int, watch: Watch) -> Run:
     if not runs:
         return _run_at(task, task.base, seed, watch)
     best = _best(runs)
-    best.elsewhere = True
+    best.elsewhere = not impossible  # then it is so where the base stands now, too
     if best.search.polishing.found:
-        best = _at_round_numbers(task, best, seed, watch)
+        best = _at_round_numbers(task, places, best, seed, watch)
     return best
 
 
@@ -106,11 +110,11 @@ def _started(task: Task, start: Start, seed: int, watch: Watch) -> Run:
     return run
 
 
-def _at_round_numbers(task: Task, run: Run, seed: int, watch: Watch) -> Run:
+def _at_round_numbers(task: Task, places: BaseRange, run: Run, seed: int, watch: Watch) -> Run:
     """Return a run at a place nearby that can be told in round numbers, if a shape does it there, too."""
     design = next(design for design in run.search.polishing.designs if design.verification.found)
     for grid in _ROUND:
-        base = _rounded(task, design.arm.base, *grid)
+        base = _rounded(places, design.arm.base, *grid)
         arm = replace(design.arm, base=base)
         joints, _ = arm.closest_joints(run.part.table.positions)
         there = _started(task, Start(arm, joints), seed, watch)
@@ -121,11 +125,19 @@ def _at_round_numbers(task: Task, run: Run, seed: int, watch: Watch) -> Run:
     return run
 
 
-def _rounded(task: Task, base: BasePose, length: float, angle: float) -> BasePose:
-    assert isinstance(task.places, BaseRange)  # noqa: S101 - for the type checker
+def _is_out_of_reach(task: Task, places: BaseRange) -> bool:
+    """Whether some target is farther from wherever P1 may be than the straight arm reaches."""
+    robot, (lower, upper) = task.robot, places.bounds[:, :3]
+    reach = robot.d12 + robot.link.length.upper + abs(robot.tip_offset) + robot.rigid_link.d35.upper
+    targets = task.table.positions
+    away = np.linalg.norm(targets - np.clip(targets, lower, upper), axis=1) - task.tolerances
+    return bool(away.max() > reach)
+
+
+def _rounded(places: BaseRange, base: BasePose, length: float, angle: float) -> BasePose:
     row = np.array([*base.position, base.roll, base.pitch, base.yaw])
     steps = np.repeat([length, angle], 3)
-    return task.places.pose(task.places.into_limits(np.round(row / steps) * steps))
+    return places.pose(places.into_limits(np.round(row / steps) * steps))
 
 
 def _best(runs: list[Run]) -> Run:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from synth.errors import SolverError
 from synth.synthesis.check import verify
 from synth.synthesis.nlp import Structure, SynthesisNlp, separations, shared_nlp
-from synth.synthesis.starts import ARCS
+from synth.synthesis.shapes import ARCS
 from synth.synthesis.wanted import Design, judged, objective
 from synth.task import Objective
 

@@ -14,7 +14,8 @@ from synth.errors import SolverError
 from synth.robot import Arm
 from synth.synthesis.bound import Bound, prove
 from synth.synthesis.nlp import Structure, shared_nlp
-from synth.synthesis.starts import ARCS, start_points
+from synth.synthesis.shapes import ARCS
+from synth.synthesis.starts import start_points
 from synth.task import Objective
 
 if TYPE_CHECKING:

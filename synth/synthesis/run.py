@@ -78,18 +78,14 @@ class Run:
     @cached_property
     def search(self) -> Search:
         """The search, with the shapes so far."""
-        return Search(self.part, self.seed, self.watch, lambda: bool(self._impossible), self.alternatives)
+        return Search(self.part, self.seed, self.watch, lambda: bool(self.impossible), self.alternatives)
 
     @cached_property
-    def _impossible(self) -> tuple[str, ...]:
+    def impossible(self) -> tuple[str, ...]:
+        """Why no shape can do the task where the base stands, as far as that is known at once."""
         # What proves that a part is out of reach proves it of all, and is sooner done.
         limited = self.watch.remaining < math.inf and len(self.task.targets) > _PROVEN_IN_TIME
         return why_impossible(self.part if limited else self.task)
-
-    @property
-    def is_impossible(self) -> bool:
-        """Whether it is known that no shape can do the task where the base stands."""
-        return bool(self._impossible)
 
     @property
     def kept_back(self) -> float:
@@ -186,8 +182,8 @@ class Run:
             return Status.FOUND, ()
         if self.broke_off is not None:
             return Status.FAILED, ()
-        if self._impossible and not self.elsewhere:
-            return Status.PROVEN_IMPOSSIBLE, self._impossible
+        if self.impossible and not self.elsewhere:
+            return Status.PROVEN_IMPOSSIBLE, self.impossible
         if self.bound is not None and self.bound.excludes and not self.elsewhere:
             return Status.PROVEN_IMPOSSIBLE, (self.bound.sentence,)
         if self.search.polishing.breakdowns and not (

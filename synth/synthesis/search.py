@@ -7,7 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from synth.synthesis.polishing import Polishing
-from synth.synthesis.starts import Start, in_equal_arcs, start_points
+from synth.synthesis.shapes import in_equal_arcs
+from synth.synthesis.starts import Start, start_points
 from synth.synthesis.wanted import Design, leaves_no_wish, objective, wished
 from synth.task import Objective
 

@@ -112,8 +112,6 @@ def _sentence(detail: ErrorDetails, path: KeyPath, siblings: dict[str, Any]) -> 
         known = did_you_mean(key, siblings) or f"; known are {', '.join(siblings)}"
         return _LATER_KEYS.get(key_text(path), f"is not a known key{known}")
     context = detail.get("ctx", {})
-    if kind == "float_type" and path[0] == "base" and isinstance(value, list):
-        return f"a free base is {_LATER}give one number"
     if kind == "float_type" and detail["loc"][-1] == ONE:
         kind = "one_or_range"
     elif kind == "greater_than_equal" and context["ge"] > 0 >= value:

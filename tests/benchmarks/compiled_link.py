@@ -47,7 +47,7 @@ def constants(task: Task) -> np.ndarray:
             robot.link.max_total_bend, robot.d12, robot.tip_offset, robot.d34, float(offset), float(radius),
             limits.base.middle, limits.base.upper - limits.base.middle,
             limits.second.lower, limits.second.upper,
-            -math.inf if task.floor is None else task.floor + _MARGIN,
+            -math.inf if task.floor_in_base is None else task.floor_in_base + _MARGIN,
             0.5 * robot.link.diameter, 0.5 * robot.rigid_link.diameter,
             math.pi * robot.link.min_bend_radius,
         ]

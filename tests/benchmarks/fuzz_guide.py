@@ -61,7 +61,7 @@ def _hold(told, first, second, not_clear):
                 "untrue", f"hold at {number} deg: limits {np.degrees([interval.lower, interval.upper])}"
             )
     solids = [obstacle.solid for obstacle in told.task.obstacles]
-    breaches = told.arm.breaches_at(joints, told.task.floor, solids)
+    breaches = told.arm.breaches_at(joints, told.task.floor_in_base, solids)
     if not not_clear and any(breach.amount > _CLEAR_SLACK for breach in breaches):
         yield Fault("untrue", f"the posture to hold is not clear: {breaches}")
 

@@ -58,13 +58,15 @@ def judge(fuzz: FuzzTask, task: Task, content, text: str, proof: float = 0.0) ->
 def broken(task: Task, arm: OracleArm, joints, *, which=None) -> list[str]:
     """Return the limits that an arm breaks in itself and at the targets, as sentences."""
     solids = [obstacle.solid for obstacle in task.obstacles]
-    told = [f"{b.limit} by {1e3 * b.amount:.6f} mm or mrad" for b in arm.breaches_of_shape(task.floor)]
+    told = [
+        f"{b.limit} by {1e3 * b.amount:.6f} mm or mrad" for b in arm.breaches_of_shape(task.floor_in_base)
+    ]
     if not arm.is_topology(task.topology.value):
         told.append(f"topology {task.topology.value}: off by {arm.off_topology}")
     for index in range(len(joints)) if which is None else which:
         told += [
             f"{task.table.names[index]}: {b.limit} by {1e3 * b.amount:.6f} mm or mrad"
-            for b in arm.breaches_at(joints[index], task.floor, solids)
+            for b in arm.breaches_at(joints[index], task.floor_in_base, solids)
         ]
     return told
 
@@ -120,7 +122,9 @@ def _numbers(task, content, arm):
             # What is missed could not be reached in this shape: else the sentence "misses by" is none.
             closest = arm.closest(targets) if closest is None else closest
             nearer = arm.misses(closest[[index]], targets[[index]])[0]
-            if nearer < misses[index] - 1e-5 and not arm.breaches_at(closest[index], task.floor, solids):
+            if nearer < misses[index] - 1e-5 and not arm.breaches_at(
+                closest[index], task.floor_in_base, solids
+            ):
                 yield Fault("not the closest", f"{name}: {nearer} is possible, said {misses[index]}")
     yield from _link(content, arm, size)
 
@@ -131,7 +135,7 @@ def _other_joints(task, arm, target, position, solids):
     for other in target["alternatives"]:
         if arm.misses(np.array([other]), position)[0] > target["tolerance"] + SLACK:
             yield Fault("misstated", f"{name}: other joint angles miss it")
-        for breach in arm.breaches_at(other, task.floor, solids):
+        for breach in arm.breaches_at(other, task.floor_in_base, solids):
             yield Fault("misstated", f"{name}: other joint angles break {breach.limit} by {breach.amount}")
 
 
@@ -158,7 +162,7 @@ def _ways(task, content, arm):
                 posture = start + share * (end - start)
                 broken_here = [
                     breach
-                    for breach in arm.breaches_at(posture, task.floor, solids)
+                    for breach in arm.breaches_at(posture, task.floor_in_base, solids)
                     if breach.amount > _WAY_SLACK
                 ]
                 if broken_here and content["status"] == "found":
@@ -182,5 +186,5 @@ def _alternatives(task, content):
                 )
             if target["within_tolerance"] and target["miss"] > tolerance + SLACK:
                 yield Fault("false found", f"{name}: {target['name']} is not within its tolerance")
-        for breach in shape.breaches_of_shape(task.floor):
+        for breach in shape.breaches_of_shape(task.floor_in_base):
             yield Fault("misstated", f"{name} breaks {breach.limit} by {breach.amount}")

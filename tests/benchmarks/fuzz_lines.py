@@ -136,7 +136,7 @@ def _would_be_met(told: Told, number):
     yield from wrongly_told("tolerances that would be met", number, 1e3 * float(told.misses.max()), "up")
     solids = [obstacle.solid for obstacle in told.task.obstacles]
     for name, joints in zip(told.names, told.joints, strict=True):
-        if told.arm.breaches_at(joints, told.task.floor, solids):
+        if told.arm.breaches_at(joints, told.task.floor_in_base, solids):
             yield Fault("untrue", f"tolerances of {number} mm would be met, but {name} is no place to be")
 
 

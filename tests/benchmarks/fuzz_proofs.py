@@ -64,7 +64,7 @@ def _proof(fuzz: FuzzTask, task: Task, reason: str) -> Iterator[list[Fault]]:
         name, *numbers = found.groups()
         yield list(_reach(task, reason, points[indices[name]], numbers))
     elif found := re.fullmatch(_BELOW_FLOOR, reason):
-        depth = task.floor - points[indices[found.group(1)], 2]
+        depth = task.floor_in_base - points[indices[found.group(1)], 2]
         yield wrongly_told(reason, found.group(2), 1e3 * depth, "down")
     elif found := re.fullmatch(_IN_SOLID, reason):
         name, solid, number = found.groups()
@@ -72,7 +72,7 @@ def _proof(fuzz: FuzzTask, task: Task, reason: str) -> Iterator[list[Fault]]:
         depth = rod - float(distance_from_solid(solids[solid], target))
         yield wrongly_told(reason, number, 1e3 * depth, "down")
     elif found := re.fullmatch(_START_BELOW, reason):
-        yield wrongly_told(reason, found.group(1), 1e3 * (task.floor - task.robot.d12), "down")
+        yield wrongly_told(reason, found.group(1), 1e3 * (task.floor_in_base - task.robot.d12), "down")
     elif found := re.fullmatch(_START_INSIDE, reason):
         p2 = task.base.to_task(np.array([0.0, 0.0, task.robot.d12]))
         depth = -float(distance_from_solid(solids[found.group(2)], p2))

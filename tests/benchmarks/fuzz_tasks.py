@@ -110,7 +110,9 @@ def planted_arm(task: Task, rng) -> OracleArm | None:
             arm = bent_into(arm, topology)
         if arm is None or not arm.is_topology(topology):
             continue
-        if not arm.breaches_of_shape(task.floor, spacing=2e-3) and not arm.breaches_of_shape(task.floor):
+        if not arm.breaches_of_shape(task.floor_in_base, spacing=2e-3) and not arm.breaches_of_shape(
+            task.floor_in_base
+        ):
             return arm
     return None
 
@@ -124,7 +126,7 @@ def legal_joints(task: Task, arm: OracleArm, count, rng):
             rng.uniform(i.lower + 1e-3 * (i.upper - i.lower), i.upper - 1e-3 * (i.upper - i.lower))
             for i in (limits.base, limits.second)
         ]
-        if not arm.breaches_at(joints, task.floor) and arm.rod_from_tube(joints) > 1e-4:
+        if not arm.breaches_at(joints, task.floor_in_base) and arm.rod_from_tube(joints) > 1e-4:
             kept.append(joints)
             if len(kept) == count:
                 return np.array(kept)
@@ -224,10 +226,10 @@ def _impossible(rng, content, task, points, size, p2):
         distance = size * (1.0 + log_uniform(rng, 1e-4, 0.5)) + tolerance
         target["position"] = 1e3 * p2 + distance * direction / np.linalg.norm(direction)
     elif why == "below the floor":
-        if task.floor is None:
+        if task.floor_in_base is None:
             return None
         position = np.array(target["position"])
-        height = 1e3 * (task.base.position[2] + task.floor)
+        height = 1e3 * task.floor_height
         position[2] = height - tolerance - log_uniform(rng, 0.01, 200.0)
         target["position"] = position
     elif why == "in an obstacle":

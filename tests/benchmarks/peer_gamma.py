@@ -14,7 +14,7 @@ from synth.errors import GeometryError
 from synth.geometry import ArmDistances, SweptCircle
 from synth.geometry._gamma_polynomials import workspace_polynomials
 from synth.geometry.distances import realise
-from synth.synthesis.starts.shapes import Shapes
+from synth.synthesis.shapes.shapes import Shapes
 
 if TYPE_CHECKING:
     from peer_race import Race

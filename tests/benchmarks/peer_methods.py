@@ -23,7 +23,7 @@ from scipy.optimize import differential_evolution, least_squares, minimize
 from synth.errors import SolverError
 from synth.synthesis import solve
 from synth.synthesis.nlp import Structure, shared_nlp
-from synth.synthesis.starts.shapes import ARCS
+from synth.synthesis.shapes.shapes import ARCS
 
 Method = Callable[[Race], None]
 

@@ -13,7 +13,7 @@ from compiled_link import UNKNOWNS, constants
 from compiled_residuals import jacobian, residuals
 
 from synth.synthesis.check.verification import verify
-from synth.synthesis.starts.shapes import Shapes, into_limits
+from synth.synthesis.shapes.shapes import Shapes, into_limits
 from synth.task import PointTarget, Task
 
 if TYPE_CHECKING:

@@ -35,8 +35,8 @@ from peer_tasks import noisy_task
 from planted import planted_task
 
 from synth.synthesis import solve
+from synth.synthesis.shapes.shapes import Shapes
 from synth.synthesis.solve import follow
-from synth.synthesis.starts.shapes import Shapes
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -7,19 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.starts.category_offsets import category_offsets, category_slopes
-from synth.synthesis.starts.overlaps import overlaps
-from synth.synthesis.starts.postures import Postures, TargetsSeen
+from synth.synthesis.shapes import Postures, TargetsSeen, category_offsets, category_slopes, overlaps
 from synth.synthesis.starts.refined import Refined, relative_weights
 from synth.synthesis.starts.residuals import Residuals
-from synth.synthesis.starts.shape_limits import free_directions
 from synth.task import Objective
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from synth.arrays import FloatArray
-    from synth.synthesis.starts.shapes import Shapes
+    from synth.synthesis.shapes import Shapes
     from synth.task import Task
 
 # After so many steps each target may take the nearer branch of joint 2, wherever it is.
@@ -64,7 +61,7 @@ class Descent:
     def after(self, iterations: int, *, keep_branches: bool, near: bool) -> Refined:
         """Return the shapes after so many steps."""
         for iteration in range(iterations):
-            self._measure_by(self._exponent_at(iteration / iterations, near=near))
+            self._measure_by(_exponent_at(self._task, iteration / iterations, near=near))
             self._step()
             if np.count_nonzero(self._cost < _EXACT) >= _ENOUGH or self._is_up():
                 break
@@ -91,11 +88,6 @@ class Descent:
                     break
                 self._step()
         return Refined(self._shapes, self._postures.joints, self._cost)
-
-    def _exponent_at(self, share: float, *, near: bool) -> float:
-        exponents = _EXPONENTS[self._task.objective]
-        share = max(share, exponents[1][0]) if near and len(exponents) > 1 else share
-        return next(exponent for since, exponent in reversed(exponents) if since <= share)
 
     def _seen_by(self, shapes: Shapes) -> TargetsSeen:
         return self._aims if shapes.places is None else TargetsSeen.by(self._task, shapes)
@@ -190,6 +182,13 @@ class Descent:
         return depth, deeper
 
 
+def _exponent_at(task: Task, share: float, *, near: bool) -> float:
+    """Return the exponent of the misses after a share of the steps."""
+    exponents = _EXPONENTS[task.objective]
+    share = max(share, exponents[1][0]) if near and len(exponents) > 1 else share
+    return next(exponent for since, exponent in reversed(exponents) if since <= share)
+
+
 def _curvature_of_norm(
     exponent: float, cost: FloatArray, curvature: FloatArray, slope: FloatArray
 ) -> FloatArray:
@@ -205,7 +204,7 @@ def _curvature_of_norm(
 
 def _damped_step(shapes: Shapes, curvature: FloatArray, slope: FloatArray, damping: FloatArray) -> FloatArray:
     """Return the Gauss-Newton steps of the unknowns that their limits allow, shape (N, unknowns)."""
-    free, unit = free_directions(shapes, slope), np.eye(slope.shape[1])
+    free, unit = shapes.free_directions(slope), np.eye(slope.shape[1])
     diagonal = np.einsum("npp->np", curvature)
     # The floor of the scale keeps unknowns that nothing depends on from running away.
     scale = diagonal + 1e-3 * diagonal.max(axis=1, keepdims=True) + 1e-12

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.geometry import arms_through_five, arms_through_four, is_generic
-from synth.synthesis.starts.shapes import ARM_LENGTH
+from synth.synthesis.shapes import ARM_LENGTH
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.geometry import Invariants
-    from synth.synthesis.starts.shapes import Shapes
+    from synth.synthesis.shapes import Shapes
     from synth.task import Task
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import compared_by_value
-from synth.synthesis.starts.shapes import Shapes
+from synth.synthesis.shapes import Shapes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

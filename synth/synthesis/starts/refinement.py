@@ -9,8 +9,8 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
+from synth.synthesis.shapes import Postures, TargetsSeen
 from synth.synthesis.starts.descent import Descent
-from synth.synthesis.starts.postures import Postures, TargetsSeen
 from synth.synthesis.starts.refined import Refined
 from synth.task import Objective
 from synth.watch import never
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from synth.arrays import FloatArray
-    from synth.synthesis.starts.shapes import Shapes
+    from synth.synthesis.shapes import Shapes
     from synth.task import Task
 
 _ITERATIONS = {Objective.LEAST_SQUARES: 20, Objective.MINIMAX: 24}

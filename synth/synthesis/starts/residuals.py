@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.starts.postures import dot
+from synth.synthesis.shapes import dot
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -15,8 +15,7 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.robot import Interval
-    from synth.synthesis.starts.postures import Postures
-    from synth.synthesis.starts.shapes import Shapes
+    from synth.synthesis.shapes import Postures, Shapes
 
 _FARTHEST_STEP = 0.5  # of joint 2, rad
 _AT_LIMIT = 1e-9  # rad

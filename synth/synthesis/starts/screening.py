@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.starts.category_offsets import category_offsets
+from synth.synthesis.shapes import Shapes, category_offsets
 from synth.synthesis.starts.refined import relative_weights
-from synth.synthesis.starts.shapes import Shapes
 from synth.task import Floor
 
 if TYPE_CHECKING:

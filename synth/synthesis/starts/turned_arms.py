@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.robot import Interval, link_to_pose
-from synth.synthesis.starts.postures import Postures, TargetsSeen
+from synth.synthesis.shapes import Postures, Shapes, TargetsSeen, in_equal_arcs
 from synth.synthesis.starts.refinement import refine
-from synth.synthesis.starts.shapes import Shapes, in_equal_arcs
 from synth.task import Objective
 
 if TYPE_CHECKING:

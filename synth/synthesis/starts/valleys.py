@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import compared_by_value
-from synth.synthesis.starts.overlaps import overlaps
+from synth.synthesis.shapes import overlaps
 from synth.synthesis.starts.refined import Refined
 from synth.synthesis.starts.refinement import cleared, level, refine
 from synth.task import Objective
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
-    from synth.synthesis.starts.shapes import Shapes
+    from synth.synthesis.shapes import Shapes
     from synth.task import Task
 
 # Rounds of the three steps; shapes kept; of these the parents, which miss differently; those of half of the

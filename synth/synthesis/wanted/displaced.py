@@ -9,7 +9,7 @@ import numpy as np
 
 from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.robot import Kinematics
-from synth.synthesis.starts import Postures, TargetsSeen
+from synth.synthesis.shapes import Postures, TargetsSeen
 
 if TYPE_CHECKING:
     from synth.robot import Arm

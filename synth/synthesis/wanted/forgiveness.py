@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.robot import Kinematics
-from synth.synthesis.starts import Postures, TargetsSeen
+from synth.synthesis.shapes import Postures, TargetsSeen
 from synth.synthesis.wanted.displaced import Displacements, rotations
 
 if TYPE_CHECKING:

@@ -8,12 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import compared_by_value
-from synth.synthesis.starts import (
-    Postures,
-    Shapes,
-    TargetsSeen,
-    overlaps,
-)
+from synth.synthesis.shapes import Postures, Shapes, TargetsSeen, overlaps
 from synth.synthesis.wanted.forgiveness import misses_after_a_hand
 from synth.synthesis.wanted.margins import Margins
 from synth.synthesis.wanted.ranking import CALM, preferences, preferred

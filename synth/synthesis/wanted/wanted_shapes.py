@@ -15,10 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.robot import Interval
+from synth.synthesis.shapes import Postures, Shapes, TargetsSeen
 from synth.synthesis.starts import (
-    Postures,
-    Shapes,
-    TargetsSeen,
     estimated_misses,
     exact_arms,
     nearest_to_exact_arms,

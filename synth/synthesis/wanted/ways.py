@@ -34,8 +34,7 @@ MOST_MOTIONS = 50  # of more targets nobody asks for the ways between them
 # The search for a way around: angles on a grid, samples of tube and rod, and the clearances to keep at these,
 # m, one after the other.
 _GRID = (91, 64)
-_SAMPLES = 24
-_FEW = 8  # of so many joint angles on a way one tells mostly that it is not clear
+_SAMPLES, _FEW = 24, 8  # one of so many joint angles on a way tells mostly that it is not clear
 _MARGINS = (0.02, 0.008, 0.003)
 _STEP = 0.02  # rad, between postures that are looked at when a way is straightened
 # What a missing way, and a posture with no margin of a joint, are worth in travel, rad: more than any ways.
@@ -207,8 +206,8 @@ class _Surroundings:
 
     def _keeps_off(self, steps: FloatArray, margin: float) -> bool:
         """Whether samples keep more than a margin at joint angles, (k, 2), a few of which are asked first."""
-        few = steps[_FEW // 2 :: _FEW]
-        return all(bool((self._sampled_clearance(*some.T) > margin).all()) for some in (few, steps))
+        parts = steps[_FEW // 2 :: _FEW], steps
+        return all(bool((self._sampled_clearance(*some.T) > margin).all()) for some in parts)
 
     def _sampled_clearance(self, theta1: FloatArray, theta2: FloatArray) -> FloatArray:
         """Return about how far tube and rod keep from everything, by samples, m.

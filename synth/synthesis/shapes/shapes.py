@@ -11,8 +11,9 @@ import numpy as np
 from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.geometry import rotation_of
 from synth.robot import ArcChains, Arm, BasePose, Kinematics, LinkShape, chain_end, chain_points
-from synth.synthesis.starts.columns import ARCS, BASE, BASE_NUMBERS, CURVATURES, D35, D45, LENGTH
-from synth.synthesis.starts.shape_limits import free_lengths, into_limits
+from synth.synthesis.shapes.columns import ARCS, BASE, BASE_NUMBERS, CURVATURES, D35, D45, LENGTH
+from synth.synthesis.shapes.limits import free_directions, free_lengths, into_limits
+from synth.synthesis.shapes.motion import motion_of_arm, motion_of_base
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from synth.robot import BaseRange, Robot
 
 _EQUAL = 1e-12  # of the whole length: by so little arcs of one length may differ
-_LEAST_RADIUS = 1e-3  # m; with P3, P4, P5 in line the radius has no derivative
 ARM_LENGTH = 0.5  # m; an axis 1 rad off puts P5 about this far off
 
 
@@ -137,45 +137,12 @@ class Shapes:
         changes of the circle's offset along axis 2 and of its radius; where the base is free, its shift and
         its turn, in its own frame. For one leading axis.
         """
+        arm = motion_of_arm(self.robot, self.unknowns, *self.rigid_links)
         if self.places is None:
-            return self._motion_of_arm
-        arm, base = self._motion_of_arm, self._motion_of_base
+            return arm
+        base = motion_of_base(self.base_rotation, self.base[:, 3:])
         whole = np.zeros((len(arm), arm.shape[1] + BASE_NUMBERS, self.unknowns.shape[1]))
         whole[:, :-BASE_NUMBERS, :-BASE_NUMBERS], whole[:, -BASE_NUMBERS:, BASE] = arm, base
-        return whole
-
-    @property
-    def _motion_of_base(self) -> FloatArray:
-        """How the base moves in its own frame by its six numbers, shape (N, 6, 6)."""
-        turn, (_, pitch, yaw) = self.base_rotation, np.moveaxis(self.base[:, 3:], -1, 0)
-        zero = np.zeros_like(yaw)
-        about = [
-            rotation_of(zero, pitch, yaw)[..., 0],
-            rotation_of(zero, zero, yaw)[..., 1],
-            np.broadcast_to([0.0, 0.0, 1.0], (len(yaw), 3)),
-        ]
-        motion = np.zeros((len(yaw), 6, 6))
-        motion[:, :3, :3] = np.swapaxes(turn, -1, -2)
-        motion[:, 3:, 3:] = np.swapaxes(turn, -1, -2) @ np.stack(about, axis=-1)
-        return motion
-
-    @property
-    def _motion_of_arm(self) -> FloatArray:
-        robot, link, root = self.robot, self.robot.link, np.sqrt(ARCS)
-        share = root * (self.length / link.length.middle - 1.0)
-        ends = ArcChains(link, ARCS).ends(np.column_stack([self.unknowns[:, CURVATURES], share]))
-        motion = np.concatenate([link.min_bend_radius * ends.d_position, ends.rotation], axis=1)
-        motion[:, :, -1] *= root / link.length.middle
-        if robot.rigid_link.is_fixed:
-            return motion
-        d35, d45 = self.rigid_links
-        offset, radius = robot.end_effector_circle(d35, d45)
-        radius = np.maximum(radius, _LEAST_RADIUS)
-        along = (offset + robot.tip_offset) / robot.d34
-        by_d35 = np.stack([d35 / robot.d34, d35 * (1.0 - along) / radius], axis=-1)
-        by_d45 = np.stack([-d45 / robot.d34, d45 * along / radius], axis=-1)
-        whole = np.zeros((len(motion), 8, motion.shape[2] + 2))
-        whole[:, :6, : LENGTH + 1], whole[:, 6:, D35], whole[:, 6:, D45] = motion, by_d35, by_d45
         return whole
 
     @cached_property
@@ -216,6 +183,10 @@ class Shapes:
     def moved(self, by: FloatArray) -> Shapes:
         """Return the shapes after steps of their unknowns, brought into the limits."""
         return replace(self, unknowns=into_limits(self.robot, self.unknowns + by, self.places))
+
+    def free_directions(self, slope: FloatArray) -> FloatArray:
+        """Return projections onto the directions in which shapes may move; see `free_directions`."""
+        return free_directions(self.robot, self.unknowns, self.places, slope)
 
     def where(self, mine: NDArray[np.bool_], other: Shapes) -> Shapes:
         """Return these shapes where a mask, shape (N,), says so, and others elsewhere."""

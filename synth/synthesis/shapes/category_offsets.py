@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.starts.shapes import ARM_LENGTH
+from synth.synthesis.shapes.shapes import ARM_LENGTH
 from synth.task import Topology
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
-    from synth.synthesis.starts.shapes import Shapes
+    from synth.synthesis.shapes.shapes import Shapes
     from synth.task import Task
 
 

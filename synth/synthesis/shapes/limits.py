@@ -6,12 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.starts.columns import ARCS, BASE, CURVATURES, D35, D45, LENGTH
+from synth.synthesis.shapes.columns import ARCS, BASE, CURVATURES, D35, D45, LENGTH
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.robot import BaseRange, Interval, Robot
-    from synth.synthesis.starts.shapes import Shapes
 
 _AT_LIMIT = 1e-9
 _TINY = 1e-300
@@ -45,16 +44,20 @@ def into_limits(robot: Robot, unknowns: FloatArray, places: BaseRange | None) ->
     return unknowns
 
 
-def free_directions(shapes: Shapes, slope: FloatArray) -> FloatArray:
+def free_directions(
+    robot: Robot, unknowns: FloatArray, places: BaseRange | None, slope: FloatArray
+) -> FloatArray:
     """Return projections onto the directions in which shapes may move, shape (N, unknowns, unknowns).
 
     A limit that is reached, and beyond which a slope leads, takes away its normal.
 
     Args:
-        shapes: Shapes within their limits, of shape (N,).
+        robot: The hardware.
+        unknowns: Of shapes within their limits, as in `Shapes`, shape (N, unknowns).
+        places: Where the base may stand, if it is free.
         slope: Slopes of what is to become less, shape (N, unknowns).
     """
-    robot, x, count = shapes.robot, shapes.unknowns, len(slope)
+    x, count = unknowns, len(slope)
     free = np.tile(np.eye(x.shape[1]), (count, 1, 1))
     curvatures = x[:, CURVATURES].reshape(count, ARCS, 2)
     bends = np.linalg.norm(curvatures, axis=-1)
@@ -65,19 +68,19 @@ def free_directions(shapes: Shapes, slope: FloatArray) -> FloatArray:
         mine = slice(2 * arc, 2 * arc + 2)
         normal = bent[:, arc] * tightest[:, arc, None]
         free[:, mine, mine] -= normal[:, :, None] * normal[:, None, :]
-    lower, upper = _ends(shapes)
+    lower, upper = _ends(robot, places)
     held = (slope[:, LENGTH:] > 0.0) & (x[:, LENGTH:] <= lower + _AT_LIMIT)
     held |= (slope[:, LENGTH:] < 0.0) & (x[:, LENGTH:] >= upper - _AT_LIMIT)
     straight = np.arange(LENGTH, x.shape[1])
     free[:, straight, straight] -= held
     total = bends.sum(axis=1)
     normal = np.zeros(x.shape)
-    normal[:, CURVATURES] = (bent * shapes.length[:, None, None]).reshape(count, -1)
+    normal[:, CURVATURES] = (bent * x[:, LENGTH, None, None]).reshape(count, -1)
     normal[:, LENGTH] = total
     normal = (free @ normal[..., None])[..., 0]
     squared = np.einsum("ni,ni->n", normal, normal)
     most = robot.link.max_total_bend * ARCS / robot.link.max_curvature
-    held = (total * shapes.length >= most - _AT_LIMIT) & (squared > _AT_LIMIT)
+    held = (total * x[:, LENGTH] >= most - _AT_LIMIT) & (squared > _AT_LIMIT)
     held &= np.einsum("ni,ni->n", slope, normal) < 0.0  # it would bend more
     free -= (held / np.maximum(squared, _TINY))[:, None, None] * normal[:, :, None] * normal[:, None, :]
     return free
@@ -89,7 +92,7 @@ def free_lengths(robot: Robot) -> list[Interval]:
     return [robot.link.length] if rigid.is_fixed else [robot.link.length, rigid.d35, rigid.d45]
 
 
-def _ends(shapes: Shapes) -> FloatArray:
+def _ends(robot: Robot, places: BaseRange | None) -> FloatArray:
     """Return the least and the largest of the unknowns behind the curvatures, shape (2, k)."""
-    of_lengths = np.array([(each.lower, each.upper) for each in free_lengths(shapes.robot)]).T
-    return of_lengths if shapes.places is None else np.hstack([of_lengths, shapes.places.ends])
+    of_lengths = np.array([(each.lower, each.upper) for each in free_lengths(robot)]).T
+    return of_lengths if places is None else np.hstack([of_lengths, places.ends])

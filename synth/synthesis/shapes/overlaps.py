@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.geometry import Solid
-    from synth.synthesis.starts.shapes import Shapes
+    from synth.synthesis.shapes.shapes import Shapes
     from synth.task import Task
 
 # The least distance along a rod is looked for at so many samples, which are drawn closer so often.

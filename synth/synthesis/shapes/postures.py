@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.robot import JointLimits, Kinematics
-    from synth.synthesis.starts.shapes import Shapes
+    from synth.synthesis.shapes.shapes import Shapes
     from synth.task import Task
 
 _NEWTON_STEPS = 2

@@ -1,0 +1,20 @@
+"""Many shapes of one robot at once, as arrays: their rows, limits, motions, postures and overlaps."""
+
+from synth.synthesis.shapes.category_offsets import category_offsets, category_slopes
+from synth.synthesis.shapes.columns import ARCS
+from synth.synthesis.shapes.overlaps import overlaps
+from synth.synthesis.shapes.postures import Postures, TargetsSeen, dot
+from synth.synthesis.shapes.shapes import ARM_LENGTH, Shapes, in_equal_arcs
+
+__all__ = [
+    "ARCS",
+    "ARM_LENGTH",
+    "Postures",
+    "Shapes",
+    "TargetsSeen",
+    "category_offsets",
+    "category_slopes",
+    "dot",
+    "in_equal_arcs",
+    "overlaps",
+]
