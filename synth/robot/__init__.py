@@ -29,6 +29,7 @@ from synth.robot.link import (
     link_to_pose,
     links_to_poses,
     pose_miss,
+    random_curvatures,
     stepped,
     why_no_link,
 )
@@ -66,6 +67,7 @@ __all__ = [
     "links_to_poses",
     "no_triangle",
     "pose_miss",
+    "random_curvatures",
     "stepped",
     "turned",
     "why_no_link",

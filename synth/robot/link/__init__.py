@@ -1,6 +1,6 @@
 """The malleable link: its shapes, its limits, where it can end."""
 
-from synth.robot.link.arc_chains import ArcChains
+from synth.robot.link.arc_chains import ArcChains, random_curvatures
 from synth.robot.link.chain_steps import stepped
 from synth.robot.link.end_pose import ANYWHERE, PoseMiss, pose_miss
 from synth.robot.link.pose_proofs import why_no_link
@@ -20,6 +20,7 @@ __all__ = [
     "link_to_pose",
     "links_to_poses",
     "pose_miss",
+    "random_curvatures",
     "stepped",
     "why_no_link",
 ]

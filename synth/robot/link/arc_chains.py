@@ -57,10 +57,7 @@ class ArcChains:
             rng: Source of randomness.
             parts: How many arcs in sequence have the same curvature.
         """
-        draws = self.arcs // parts
-        bend = np.sqrt(rng.uniform(size=(count, draws)))
-        direction = rng.uniform(0.0, 2.0 * np.pi, (count, draws))
-        k = np.stack([bend * np.cos(direction), bend * np.sin(direction)], axis=-1)
+        k = random_curvatures(count, self.arcs // parts, rng)
         share = rng.uniform(*self._shares, count)
         return self.into_limits(np.column_stack([np.repeat(k, parts, axis=1).reshape(count, -1), share]))
 
@@ -166,6 +163,13 @@ class ArcChains:
             root * (interval.lower / interval.middle - 1.0),
             root * (interval.upper / interval.middle - 1.0),
         )
+
+
+def random_curvatures(count: int, arcs: int, rng: np.random.Generator) -> FloatArray:
+    """Draw curvatures (kx, ky) uniform in their disc, in units of the largest, shape (count, arcs, 2)."""
+    bend = np.sqrt(rng.uniform(size=(count, arcs)))
+    direction = rng.uniform(0.0, 2.0 * np.pi, (count, arcs))
+    return np.stack([bend * np.cos(direction), bend * np.sin(direction)], axis=-1)
 
 
 def _arc_derivatives(k: FloatArray, length: FloatArray) -> tuple[FloatArray, FloatArray]:

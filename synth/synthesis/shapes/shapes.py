@@ -10,7 +10,16 @@ import numpy as np
 
 from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.geometry import rotation_of
-from synth.robot import ArcChains, Arm, BasePose, Kinematics, LinkShape, chain_end, chain_points
+from synth.robot import (
+    ArcChains,
+    Arm,
+    BasePose,
+    Kinematics,
+    LinkShape,
+    chain_end,
+    chain_points,
+    random_curvatures,
+)
 from synth.synthesis.shapes.columns import ARCS, BASE, BASE_NUMBERS, CURVATURES, D35, D45, LENGTH
 from synth.synthesis.shapes.limits import free_directions, free_lengths, into_limits
 from synth.synthesis.shapes.motion import motion_of_arm, motion_of_base
@@ -55,9 +64,7 @@ class Shapes:
             size: How many.
             rng: Source of randomness.
         """
-        bend = np.sqrt(rng.uniform(size=(size, ARCS)))
-        direction = rng.uniform(0.0, 2.0 * np.pi, (size, ARCS))
-        curvatures = np.stack([bend * np.cos(direction), bend * np.sin(direction)], axis=-1)
+        curvatures = random_curvatures(size, ARCS, rng)
         lengths = [rng.uniform(each.lower, each.upper, size) for each in free_lengths(robot)]
         unknowns = np.column_stack([curvatures.reshape(size, -1), *lengths])
         return cls(robot, into_limits(robot, unknowns, None))
