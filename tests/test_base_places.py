@@ -16,6 +16,9 @@ from synth.geometry import Box, roll_pitch_yaw, rotation_of
 from synth.guide import make_guide
 from synth.robot import BaseChoices, BasePose, BaseRange, Interval
 from synth.synthesis import Status
+from synth.synthesis.shapes import Shapes
+from synth.synthesis.starts import refine, start_points
+from synth.synthesis.starts.screening import shapes_at_places
 from synth.task import Obstacle, PointTarget, Task
 
 WALL = """
@@ -173,3 +176,31 @@ def test_obstacles_are_kept_clear_of_from_the_place_chosen():
     solution = synth.solve(replace(task, obstacles=(block,)))
     assert solution.found
     assert solution.best.verification.clearances.min() >= 0.0
+
+
+def test_shapes_and_targets_move_with_the_base_as_differences_say():
+    task, _ = planted_base(1, leaning=LEANING)
+    shapes = shapes_at_places(task, task.places, 0).take(slice(20))
+    rows = shapes.motion[:, -6:, -6:]  # shift and turn of the base in its own frame
+    point, step = np.array([[0.3, -0.2, 0.5]]), 1e-6
+    for number in range(6):
+        moved = [shapes.unknowns.copy() for _ in range(2)]
+        for sign, unknowns in zip((step, -step), moved, strict=True):
+            unknowns[:, number - 6] += sign
+        seen = [replace(shapes, unknowns=unknowns).seen(point)[:, 0] for unknowns in moved]
+        shift, turn = rows[:, :3, number], rows[:, 3:, number]
+        expected = -shift - np.cross(turn, shapes.seen(point)[:, 0])
+        assert (seen[0] - seen[1]) / (2.0 * step) == pytest.approx(expected, abs=1e-7)
+
+
+def test_the_step_leads_to_the_targets_from_nearby():
+    """Near the answer the cost falls by orders of magnitude in a few steps: the derivatives are right."""
+    task, base = planted_base(2, leaning=LEANING)
+    start = next(start_points(task, 0))
+    shapes = Shapes.of(start.arm).at_places(task.places, np.random.default_rng(0))
+    unknowns = shapes.unknowns.copy()
+    unknowns[:, -6:-3] = start.arm.base.position + 2e-3
+    unknowns[:, -3:] = np.array([start.arm.base.roll, start.arm.base.pitch, start.arm.base.yaw]) + 0.01
+    refined = refine(task, replace(shapes, unknowns=unknowns), iterations=8, near=True)
+    assert refined.cost[0] < 1e-12
+    assert base.position == pytest.approx(task.places.pose(refined.shapes.base[0]).position, abs=0.1)

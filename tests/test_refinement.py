@@ -12,7 +12,7 @@ from synth.robot import BasePose, Interval, JointLimits, RigidLink
 from synth.synthesis.shapes.category_offsets import category_offsets, category_slopes
 from synth.synthesis.shapes.overlaps import overlaps
 from synth.synthesis.shapes.postures import Postures, TargetsSeen
-from synth.synthesis.shapes.shapes import Shapes, free_directions, in_equal_arcs, into_limits
+from synth.synthesis.shapes.shapes import Shapes, in_equal_arcs, into_limits
 from synth.synthesis.starts.descent import _curvature_of_norm
 from synth.synthesis.starts.refined import relative_weights
 from synth.synthesis.starts.refinement import cleared, level, refine
@@ -110,7 +110,7 @@ def test_free_directions_lead_along_limits_and_not_beyond(robot):
     stretched[:, 8:] += rng.normal(scale=0.1, size=stretched[:, 8:].shape)
     shapes = Shapes(robot, into_limits(robot, stretched))
     slope = rng.normal(size=shapes.unknowns.shape)
-    free = free_directions(shapes, slope)
+    free = shapes.free_directions(slope)
     assert np.allclose(free, free.transpose(0, 2, 1))
     assert np.allclose(free @ free, free, atol=1e-9)
     downhill = -(free @ slope[..., None])[..., 0]

@@ -16,7 +16,7 @@ _AT_LIMIT = 1e-9
 _TINY = 1e-300
 
 
-def into_limits(robot: Robot, unknowns: FloatArray, places: BaseRange | None) -> FloatArray:
+def into_limits(robot: Robot, unknowns: FloatArray, places: BaseRange | None = None) -> FloatArray:
     """Return unknowns moved into the limits of the hardware: lengths, bend radius, total bend.
 
     Where the link would bend too much in all, every arc is straightened by the same share. The orthogonal
@@ -96,7 +96,7 @@ def free_lengths(robot: Robot) -> list[Interval]:
     return [robot.link.length] if rigid.is_fixed else [robot.link.length, rigid.d35, rigid.d45]
 
 
-def _ends(robot: Robot, places: BaseRange | None) -> FloatArray:
+def _ends(robot: Robot, places: BaseRange | None = None) -> FloatArray:
     """Return the least and the largest of the unknowns behind the curvatures, shape (2, k)."""
     of_lengths = np.array([(each.lower, each.upper) for each in free_lengths(robot)]).T
     return of_lengths if places is None else np.hstack([of_lengths, places.ends])
