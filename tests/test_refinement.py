@@ -71,7 +71,7 @@ def test_the_slope_is_that_of_the_squared_misses_with_the_joints_at_their_best(r
     def led(aims, shapes, theta2):
         """Postures whose joint 2 is led on to its best, and which of them are there."""
         for _ in range(40):
-            residuals = Residuals(shapes, Postures.at(aims, shapes.kinematics, theta2), limits.second)
+            residuals = Residuals(shapes, Postures.at(aims, shapes.kinematics, theta2), aims)
             step = residuals.following(np.zeros((len(theta2), shapes.motion.shape[1])))
             theta2 = np.clip(theta2 + step, limits.second.lower, limits.second.upper)
         return Postures.at(aims, shapes.kinematics, theta2), np.abs(step[:, 0]) < 1e-10
@@ -79,7 +79,7 @@ def test_the_slope_is_that_of_the_squared_misses_with_the_joints_at_their_best(r
     for target in noisy(1).positions_in_base:
         aims = TargetsSeen(target[None], limits)
         here, arrived = led(aims, shapes, Postures.nearest(aims, shapes.kinematics).theta2)
-        _, slope = Residuals(shapes, here, limits.second).normal_equations(np.ones((30, 1)))
+        _, slope = Residuals(shapes, here, aims).normal_equations(np.ones((30, 1)))
         by_unknowns = np.einsum("nk,nku->nu", slope, shapes.motion)
         for unknown in range(shapes.unknowns.shape[1]):
             (more, sure), (less, again) = (led(aims, p, here.theta2) for p in nudged(shapes, unknown))

@@ -18,7 +18,7 @@ from synth.task.robot_schema import RobotEntry
 from synth.task.schema import task_schema
 from synth.task.sizes import PER_METRE
 from synth.task.solution_file import load_shapes
-from synth.task.targets import DEFAULT_TOLERANCE, PointTarget, TargetTable
+from synth.task.targets import DEFAULT_TOLERANCE, Approach, PointTarget, TargetTable
 from synth.task.wording import validate
 
 __all__ = [
@@ -27,6 +27,7 @@ __all__ = [
     "MAPPING",
     "PER_METRE",
     "TEXT",
+    "Approach",
     "Floor",
     "LengthUnit",
     "Name",

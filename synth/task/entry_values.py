@@ -28,7 +28,7 @@ from synth.task.hardware_distances import off_the_hardware
 from synth.task.model import Obstacle, Task
 from synth.task.schema import BoxEntry, CapsuleEntry, SphereEntry
 from synth.task.sizes import PER_METRE
-from synth.task.targets import DEFAULT_TOLERANCE, PointTarget, TargetTable
+from synth.task.targets import DEFAULT_TOLERANCE, Approach, PointTarget, TargetTable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -117,6 +117,9 @@ def _to_target(entry: TargetEntry, per_metre: float, name: str) -> PointTarget:
         position=np.array(entry.position) / per_metre,
         tolerance=DEFAULT_TOLERANCE if entry.tolerance is None else entry.tolerance / per_metre,
         weight=entry.weight,
+        approach=None
+        if entry.approach is None
+        else Approach(np.array(entry.approach.direction), math.radians(entry.approach.tolerance_deg)),
     )
 
 

@@ -144,6 +144,14 @@ class Task:
         """Tolerances of all targets, shape (n,), m."""
         return self.table.tolerances
 
+    @cached_property
+    def approaches_in_base(self) -> FloatArray | None:
+        """Directions of arrival in the base frame and their tolerances, shape (n, 4); see `TargetTable`."""
+        rows = self.table.approaches
+        return (
+            None if rows is None else frozen(np.column_stack([rows[:, :3] @ self.base.rotation, rows[:, 3]]))
+        )
+
     @property
     def weights(self) -> FloatArray:
         """Weights of all targets, shape (n,)."""

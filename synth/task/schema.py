@@ -38,6 +38,15 @@ def _at_base() -> Any:
     return Floor.AT_BASE
 
 
+class ApproachEntry(Strict):
+    """The direction in which the rigid link points as it arrives, from axis 2 to the end effector."""
+
+    direction: Position = Field(description="[x, y, z] in the task frame, of any length")
+    tolerance_deg: Annotated[float, Field(gt=0, le=180)] = Field(
+        default=5.0, description="largest angle between the two, deg"
+    )
+
+
 class TargetEntry(Strict):
     """A point to be reached."""
 
@@ -45,6 +54,9 @@ class TargetEntry(Strict):
     position: Position = Field(description="[x, y, z] in the task frame")
     tolerance: Positive = Field(default_factory=absent, description="largest miss; 1 mm if absent")
     weight: Positive = Field(default=1.0, description="factor of its squared miss")
+    approach: ApproachEntry = Field(
+        default_factory=absent, description="direction in which the rigid link points there"
+    )
 
 
 class SphereEntry(Strict):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.checks import LONGEST_NAME, SMALLEST, Checks, described, wrong_name
 from synth.names import given_twice
 
@@ -17,7 +18,33 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
+DEFAULT_APPROACH_TOLERANCE = math.radians(5.0)
 DEFAULT_TOLERANCE = 1e-3  # m: twice the error of the motion capture that measured the prototype
+
+
+@compared_by_value
+@dataclass(frozen=True, eq=False)
+class Approach:
+    """The direction in which the rigid link points as it arrives at a target, from axis 2 to P5.
+
+    Attributes:
+        direction: In the task frame, shape (3,), without unit; its length does not count.
+        tolerance: Largest angle between the two that counts as arrived, rad.
+    """
+
+    direction: FloatArray
+    tolerance: float = DEFAULT_APPROACH_TOLERANCE
+
+    def __post_init__(self) -> None:
+        checks = Checks(self)
+        if checks.array("direction", (3,)):
+            length = float(np.linalg.norm(self.direction))
+            if length > 0.0:
+                checks.put("direction", frozen(self.direction / length))
+            else:
+                checks.report("direction", "must point somewhere, but is zero")
+        checks.number("tolerance", least=SMALLEST, most=math.pi)
+        checks.refuse()
 
 
 @compared_by_value
@@ -30,12 +57,14 @@ class PointTarget:
         position: Where it is in the task frame, shape (3,), m.
         tolerance: Largest miss that counts as reached, m.
         weight: Factor of its (miss / tolerance)^2 in the objective.
+        approach: In which direction the rigid link points there; None if that is all one.
     """
 
     name: str
     position: FloatArray
     tolerance: float = DEFAULT_TOLERANCE
     weight: float = 1.0
+    approach: Approach | None = None
 
     def __post_init__(self) -> None:
         checks = Checks(self)
@@ -43,6 +72,7 @@ class PointTarget:
         checks.array("position", (3,))
         checks.number("tolerance", least=SMALLEST)
         checks.number("weight", least=SMALLEST)
+        checks.is_a("approach", (Approach, type(None)))
         checks.refuse()
 
 
@@ -64,12 +94,15 @@ class TargetTable(Sequence[PointTarget]):
         positions: Where they are in the task frame, shape (n, 3), m.
         tolerances: Largest misses that count as reached, shape (n,), m.
         weights: Factors of their (miss / tolerance)^2, shape (n,).
+        approaches: Directions of arrival in the task frame and their tolerances, rad, shape (n, 4), rows of
+            NaN for targets without one; None if all are.
     """
 
     names: Sequence[str]
     positions: FloatArray
     tolerances: FloatArray
     weights: FloatArray
+    approaches: FloatArray | None = None
 
     def __post_init__(self) -> None:
         checks = Checks(self)
@@ -96,6 +129,7 @@ class TargetTable(Sequence[PointTarget]):
             np.array([target.position for target in targets]).reshape(-1, 3),
             np.array([target.tolerance for target in targets]),
             np.array([target.weight for target in targets]),
+            _rows([target.approach for target in targets]),
         )
 
     def __len__(self) -> int:
@@ -109,7 +143,9 @@ class TargetTable(Sequence[PointTarget]):
         if isinstance(index, slice):
             return self.take(np.arange(len(self))[index])
         tolerance, weight = float(self.tolerances[index]), float(self.weights[index])
-        return PointTarget(self.names[index], self.positions[index], tolerance, weight)
+        row = None if self.approaches is None else self.approaches[index]
+        approach = None if row is None or np.isnan(row[3]) else Approach(row[:3], float(row[3]))
+        return PointTarget(self.names[index], self.positions[index], tolerance, weight, approach)
 
     def take(self, chosen: NDArray[np.intp]) -> TargetTable:
         """Return some of the targets."""
@@ -118,16 +154,34 @@ class TargetTable(Sequence[PointTarget]):
             self.positions[chosen],
             self.tolerances[chosen],
             self.weights[chosen],
+            None if self.approaches is None else self.approaches[chosen],
         )
 
     def followed_by(self, other: TargetTable) -> TargetTable:
         """Return these targets and then others."""
+        rows = [_no_approaches(len(t)) if t.approaches is None else t.approaches for t in (self, other)]
         return TargetTable(
             (*self.names, *other.names),
             np.concatenate([self.positions, other.positions]),
             np.concatenate([self.tolerances, other.tolerances]),
             np.concatenate([self.weights, other.weights]),
+            None if self.approaches is None and other.approaches is None else np.concatenate(rows),
         )
+
+
+def _rows(approaches: Sequence[Approach | None]) -> FloatArray | None:
+    """Return approaches as a table has them."""
+    if not any(approaches):
+        return None
+    rows = _no_approaches(len(approaches))
+    for row, approach in zip(rows, approaches, strict=True):
+        if approach is not None:
+            row[:] = [*approach.direction, approach.tolerance]
+    return rows
+
+
+def _no_approaches(count: int) -> FloatArray:
+    return np.full((count, 4), np.nan)
 
 
 def _check_names(checks: Checks, given: Any) -> None:

@@ -13,6 +13,7 @@ import numpy as np
 
 from synth.arrays import compared_by_value
 from synth.robot import Arm, ArmBody
+from synth.synthesis.check.approaches import beyond_direction
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 LENGTH_SLACK = 1e-6  # what rounding may do, m
+_FIRST = 1e3  # m / rad: joint angles that point as asked come before all that come nearer
 _TOGETHER = 2000  # joint angles whose clearances are looked at together
 # Of more joint angles than that the ranges that they lie in are looked at first: whole ranges of joint 2, so
 # many of them, in which the arm is clear of itself by a little, m.
@@ -46,17 +48,19 @@ def chosen_joints(
     targets = task.table.positions
     closest, _ = arm.closest_joints(targets)
     candidates = np.stack([closest] if given is None else [closest, given])
-    misses = _misses(task, arm, candidates, targets)
+    elsewhere = _FIRST * beyond_direction(task, arm, candidates)
+    misses = _misses(task, arm, candidates, targets) + elsewhere
     if given is not None and keep:
         misses[1][misses[1] <= task.tolerances] = -1.0  # before all others
     best, each = np.argmin(misses, axis=0), np.arange(len(targets))
     chosen, sunk = candidates[best, each], np.isinf(misses[best, each])
     # The nearest one mostly does; the branches of the inverse kinematics are looked at where it does not.
-    stuck = np.flatnonzero(sunk | ~clear_of_everything(task, arm, chosen))
+    stuck = np.flatnonzero(sunk | ~clear_of_everything(task, arm, chosen) | elsewhere.all(axis=0))
     if len(stuck):
         branches = arm.inverse_kinematics(targets[stuck])
         others = np.moveaxis(branches.joints, -2, 0)
         off = _misses(task, arm, others, targets[stuck])
+        off += _FIRST * beyond_direction(task, arm, others, stuck)
         off[np.isinf(branches.miss.T)] = np.inf  # beyond the joint limits, or no branch at all
         candidates, misses = (
             np.concatenate(pair) for pair in ((candidates[:, stuck], others), (misses[:, stuck], off))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.synthesis.check.approaches import beyond_direction
 from synth.synthesis.check.clearances import clear_of_everything
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ class TargetResult:
         reached: Where the end effector gets to, shape (3,).
         miss: Distance between the two, m; infinite where there is no shape.
         within_tolerance: Whether the target is reached.
+        astray: By how much the rigid link points elsewhere than asked, rad; NaN if no direction is asked for.
         clearance: How far the arm at least keeps from the obstacles there, m; told up to 0.1 m, and
             infinite without obstacles.
         joints: Joint angles (theta1, theta2), rad.
@@ -43,6 +45,7 @@ class TargetResult:
     reached: FloatArray
     miss: float
     within_tolerance: bool
+    astray: float
     clearance: float
     joints: FloatArray
     alternatives: FloatArray
@@ -68,6 +71,8 @@ def joints_reaching(
     other = np.abs(branches.joints - best[:, None]).max(axis=-1) > 1e-3
     other &= branches.miss <= task.tolerances[chosen, None]
     other &= np.array(check.within_tolerance)[chosen, None]
+    every_branch = np.moveaxis(branches.joints, -2, 0)
+    other &= beyond_direction(task, arm, every_branch, chosen).T == 0.0
     other[other] = clear_of_everything(task, arm, branches.joints[other])
     return [np.vstack([joints, branches.joints[index][other[index]]]) for index, joints in enumerate(best)]
 
@@ -86,6 +91,7 @@ def target_results(
             reached=frozen(check.reached[index]),
             miss=float(check.misses[index]),
             within_tolerance=check.within_tolerance[index],
+            astray=float(check.astray[index]),
             clearance=float(check.clearances[index]),
             joints=frozen(joints[row][0]),
             alternatives=frozen(joints[row][1:]),

@@ -13,6 +13,7 @@ import numpy as np
 from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.checks import refuse_unless
 from synth.robot import Arm
+from synth.synthesis.check.approaches import beyond_direction, pointing_astray
 from synth.synthesis.check.clearances import chosen_joints
 from synth.synthesis.check.violations import Violation, violations
 from synth.task import Task
@@ -30,6 +31,8 @@ class Verification:
         within_tolerance: Whether each target is reached, shape (n,).
         gamma_residuals: |Gamma(P5)| over the sum of its terms' magnitudes, shape (n,): that P5 lies
             on the published surface, too; about 1e-12.
+        astray: By how much the rigid link points elsewhere than asked at each target, shape (n,), rad; NaN
+            where no direction is asked for.
         clearances: How far the arm at least keeps from the obstacles at each target, shape (n,), m;
             no more than 0.1 m is looked for, and without obstacles it is infinite.
         violations: Limits that the shape breaks; empty for a shape that the hardware can take.
@@ -42,6 +45,7 @@ class Verification:
     misses: FloatArray
     within_tolerance: tuple[bool, ...]
     gamma_residuals: FloatArray
+    astray: FloatArray
     clearances: FloatArray
     violations: tuple[Violation, ...]
     unseen: int = 0
@@ -80,13 +84,14 @@ def verify(task: Task, arm: Arm, joints: FloatArray | None = None, *, keep: bool
     reached = arm.forward_kinematics(chosen[:, 0], chosen[:, 1])
     blocked = sunk | ~room.clear
     misses = np.linalg.norm(reached - task.table.positions, axis=-1)
-    within = (misses <= task.tolerances) & ~blocked
+    within = (misses <= task.tolerances) & ~blocked & (beyond_direction(task, arm, chosen) == 0.0)
     return Verification(
         joints=frozen(chosen),
         reached=frozen(reached),
         misses=frozen(misses),
         within_tolerance=tuple(bool(value) for value in within),
         gamma_residuals=frozen(arm.surface.residual(arm.base.to_base(reached))),
+        astray=frozen(pointing_astray(task, arm, chosen)),
         clearances=frozen(room.from_obstacles.min(axis=(-2, -1), initial=math.inf)),
         violations=violations(task, arm, chosen, reached, room),
     )

@@ -3,7 +3,7 @@
 from synth.synthesis.shapes.category_offsets import category_offsets, category_slopes
 from synth.synthesis.shapes.columns import ARCS
 from synth.synthesis.shapes.overlaps import overlaps
-from synth.synthesis.shapes.postures import Postures, TargetsSeen, dot
+from synth.synthesis.shapes.postures import Postures, TargetsSeen, dot, pointing_off
 from synth.synthesis.shapes.shapes import ARM_LENGTH, Shapes, in_equal_arcs
 
 __all__ = [
@@ -17,4 +17,5 @@ __all__ = [
     "dot",
     "in_equal_arcs",
     "overlaps",
+    "pointing_off",
 ]

@@ -40,17 +40,29 @@ class TargetsSeen:
     Attributes:
         positions: Targets in the base frame, shape (n, 3), m; or in those of N bases, shape (N, n, 3).
         limits: Limits of both joints.
+        approaches: Directions of arrival in the base frame and their tolerances, rad, shape (n, 4) or
+            (N, n, 4), NaN where there is none; None if all are.
     """
 
     positions: FloatArray
     limits: JointLimits
+    approaches: FloatArray | None = None
 
     @classmethod
     def by(cls, task: Task, shapes: Shapes) -> TargetsSeen:
         """Return the targets of a task as shapes see them, each from its own base if that is free."""
-        free = shapes.places is not None
-        positions = shapes.seen(task.table.positions) if free else task.positions_in_base
-        return cls(positions, task.robot.joint_limits)
+        if shapes.places is None:
+            return cls.of(task)
+        rows = task.table.approaches
+        if rows is not None:
+            seen = np.broadcast_to(rows[:, 3:], (len(shapes.length), len(rows), 1))
+            rows = np.concatenate([rows[:, :3] @ shapes.base_rotation, seen], axis=-1)
+        return cls(shapes.seen(task.table.positions), task.robot.joint_limits, rows)
+
+    @classmethod
+    def of(cls, task: Task, limits: JointLimits | None = None) -> TargetsSeen:
+        """Return the targets of a task from its base, for its joint limits or others."""
+        return cls(task.positions_in_base, limits or task.robot.joint_limits, task.approaches_in_base)
 
     @cached_property
     def radial(self) -> FloatArray:
@@ -76,6 +88,8 @@ class Postures:
         point: P5 where joint 1 stands at zero, shape (3, N, n), m.
         miss: P5 - target, outward, around and up, shape (3, N, n), m.
         tangent: dP5/dtheta2, outward, around and up, shape (3, N, n), m.
+        astray: How far, at P5's radius, the rigid link points beside the cone asked for, shape (N, n), m: 0
+            within it, and where there is none.
         turns: Whether joint 1 follows where P5 moves around axis 1, shape (N, n): not at its limits, and
             not to speak of for a target on the axis.
     """
@@ -87,6 +101,7 @@ class Postures:
     point: FloatArray
     miss: FloatArray
     tangent: FloatArray
+    astray: FloatArray
     turns: NDArray[np.bool_]
 
     @classmethod
@@ -118,7 +133,12 @@ class Postures:
         )
         tangent = np.stack([x * along[0] + y * along[1], x * along[1] - y * along[0], along[2]])
         turns = (beyond == 0.0) & (aims.radial > _NEAR_AXIS)
-        return cls(theta2, theta1, beyond, outward, point, miss, tangent, turns)
+        astray = np.zeros_like(theta1)
+        if aims.approaches is not None:
+            off, allowed = pointing_off(aims.approaches, point - centre, theta1)
+            length = np.sqrt(dot(off, off))
+            astray = np.where(length > allowed, kinematics.radius[:, None] * (length - allowed), 0.0)
+        return cls(theta2, theta1, beyond, outward, point, miss, tangent, astray, turns)
 
     @classmethod
     def nearest(cls, aims: TargetsSeen, kinematics: Kinematics, *, never_away: bool = False) -> Postures:
@@ -167,8 +187,8 @@ class Postures:
 
     @cached_property
     def squared(self) -> FloatArray:
-        """Squared misses, shape (N, n), m^2."""
-        return dot(self.miss, self.miss)
+        """Squared misses, those of the directions asked for with them, shape (N, n), m^2."""
+        return np.asarray(dot(self.miss, self.miss) + self.astray**2)
 
     @cached_property
     def free_tangent(self) -> tuple[FloatArray, FloatArray]:
@@ -192,3 +212,24 @@ class Postures:
 def dot(one: FloatArray, two: FloatArray) -> FloatArray:
     """Return scalar products of vectors with their components on the first axis."""
     return np.asarray(one[0] * two[0] + one[1] * two[1] + one[2] * two[2])
+
+
+def pointing_off(
+    approaches: FloatArray, rigid_link: FloatArray, theta1: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return how the rigid link's direction differs from that asked for, and by how much it may.
+
+    Args:
+        approaches: As of `TargetsSeen`.
+        rigid_link: From axis 2 to P5 where joint 1 stands at zero, shape (3, N, n), m.
+        theta1: Angles of joint 1, shape (N, n), rad.
+
+    Returns:
+        The direction less the one asked for, turned back by joint 1, shape (3, N, n), NaN where none is; and
+        the length of that which the tolerance allows, shape (n,) or (N, n).
+    """
+    x, y, z = np.moveaxis(approaches[..., :3], -1, 0)
+    cos, sin = np.cos(theta1), np.sin(theta1)
+    wanted = np.stack([cos * x + sin * y, cos * y - sin * x, np.broadcast_to(z, theta1.shape)])
+    length = np.maximum(np.sqrt(dot(rigid_link, rigid_link)), _TINY)
+    return rigid_link / length - wanted, 2.0 * np.sin(0.5 * approaches[..., 3])

@@ -125,7 +125,7 @@ class Descent:
 
     def _step(self) -> None:
         """Move each shape by a damped step if that makes it better."""
-        residuals = Residuals(self._shapes, self._postures, self._aims.limits.second)
+        residuals = Residuals(self._shapes, self._postures, self._seen_by(self._shapes))
         cost, shares = self._shares(self._postures)
         curvature, slope = residuals.normal_equations(shares)
         if self._exponent != _SQUARES:

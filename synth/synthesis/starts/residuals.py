@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.shapes import dot
+from synth.synthesis.shapes import dot, pointing_off
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -14,8 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
-    from synth.robot import Interval
-    from synth.synthesis.shapes import Postures, Shapes
+    from synth.synthesis.shapes import Postures, Shapes, TargetsSeen
 
 _FARTHEST_STEP = 0.5  # of joint 2, rad
 _AT_LIMIT = 1e-9  # rad
@@ -35,11 +34,12 @@ class Residuals:
     Args:
         shapes: N shapes.
         postures: Their postures at n targets.
-        limits: Limits of joint 2.
+        aims: The targets as the shapes see them.
     """
 
-    def __init__(self, shapes: Shapes, postures: Postures, limits: Interval) -> None:
-        self._postures = postures
+    def __init__(self, shapes: Shapes, postures: Postures, aims: TargetsSeen) -> None:
+        self._postures, self._kinematics, self._approaches = postures, shapes.kinematics, aims.approaches
+        limits = aims.limits.second
         self._base_is_free = shapes.places is not None
         frame, position = shapes.end
         self._lever = postures.point - position.T[..., None]
@@ -89,7 +89,40 @@ class Residuals:
             left = dot(direction, self._postures.miss[:, owner, target]) * root[owner, target]
             curvature[owners] += np.add.reduceat(some[:, :, None] * some[:, None, :], first)
             slope[owners] += np.add.reduceat(some * left[:, None], first)
+        if self._approaches is not None and self._postures.astray.any():
+            rows = self._direction_slopes(self._approaches) * root[..., None]
+            curvature += rows.transpose(0, 2, 1) @ rows
+            slope += np.einsum("nti,nt->ni", rows, self._postures.astray * root)
         return curvature, slope
+
+    def _direction_slopes(self, approaches: FloatArray) -> FloatArray:
+        """Return how the rigid link's direction leaves the cone asked for, by the rows of `Shapes.motion`.
+
+        The joints follow P5, as far as they are free. Shape (N, n, k), m; 0 within the cone.
+        """
+        postures, kinematics = self._postures, self._kinematics
+        rigid_link = postures.point - kinematics.centre.T[..., None]
+        off, _ = pointing_off(approaches, rigid_link, postures.theta1)
+        out = np.where(postures.astray > 0.0, off, 0.0)
+        out = out / np.maximum(np.sqrt(dot(out, out)), _TINY)
+        pointing = rigid_link / np.maximum(kinematics.radius, _TINY)[:, None]
+        wanted = np.where(postures.astray > 0.0, pointing - off, 0.0)
+        by_motion = np.zeros((*postures.theta2.shape, self._slopes(self._along).shape[-1]))
+        by_motion[..., 3:6] = np.moveaxis(np.cross(pointing, out, axis=0), 0, -1)
+        if self._base_is_free:
+            x, y, z = np.cross(wanted, out, axis=0)
+            c, s = np.cos(postures.theta1), np.sin(postures.theta1)
+            by_motion[..., -3:] = np.stack([c * x - s * y, s * x + c * y, z], axis=-1)
+        second = -self._slopes(self._along) * (self._free / np.maximum(self._speed, _SLOWEST))[..., None]
+        zero = np.zeros_like(postures.theta2)
+        around = self._slopes(np.stack([zero, zero + 1.0, zero])) + postures.tangent[1][..., None] * second
+        radial = np.hypot(postures.point[0], postures.point[1])
+        first = -around * (postures.turns / np.maximum(radial, _TINY))[..., None]
+        frame, (sin, cos) = kinematics.frame, (np.sin(postures.theta2), np.cos(postures.theta2))
+        circling = cos * frame[..., 1].T[..., None] + sin * frame[..., 2].T[..., None]
+        by_motion += dot(out, circling)[..., None] * second
+        by_motion += (out[1] * wanted[0] - out[0] * wanted[1])[..., None] * first
+        return np.asarray(kinematics.radius[:, None, None] * by_motion)
 
     def _held_directions(self, normal: FloatArray, steep: FloatArray) -> Iterator[tuple[FloatArray, _Pairs]]:
         """Yield directions that held joints leave beside the normal, and for which shapes and targets."""

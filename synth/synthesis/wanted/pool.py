@@ -60,7 +60,7 @@ class Pool:
             stop: When it says yes the obstacles are left out: nobody asks for these shapes any more.
             part: Of each tolerance, that a miss may take.
         """
-        aims = TargetsSeen(task.positions_in_base, narrow.robot.joint_limits)
+        aims = TargetsSeen.of(task, narrow.robot.joint_limits)
         postures = Postures.nearest(aims, shapes.kinematics)
         within = (np.sqrt(postures.squared) <= part * task.tolerances).all(axis=1)
         joints = postures.joints

@@ -170,9 +170,7 @@ def _promising(task: Task, led: int, rng: np.random.Generator) -> Shapes:
     misses = np.minimum(estimated_misses(task, shapes), _FAR)
     order = np.argsort(relative_weights(task) @ misses**2, kind="stable")
     good = rng.permutation(order[:_GOOD])[:_ASKED]
-    postures = Postures.nearest(
-        TargetsSeen(task.positions_in_base, task.robot.joint_limits), shapes.take(good).kinematics
-    )
+    postures = Postures.nearest(TargetsSeen.of(task), shapes.take(good).kinematics)
     calm = good[np.argsort(swings_of(postures.joints).max(axis=1, initial=0.0), kind="stable")]
     chosen = np.union1d(order[: led - _LED // 2], calm[: _LED // 2])
     if designs := exact_arms(task):
