@@ -24,7 +24,9 @@ if TYPE_CHECKING:
     from synth.robot import (
         PRESETS,
         Arm,
+        BaseChoices,
         BasePose,
+        BaseRange,
         Interval,
         JointLimits,
         LinkShape,
@@ -38,6 +40,7 @@ if TYPE_CHECKING:
     )
     from synth.synthesis import NotFoundError, Solution, Status, explain, motions, solve, verify
     from synth.task import (
+        Approach,
         Objective,
         Obstacle,
         PointTarget,
@@ -57,7 +60,9 @@ _ROOMS = {
     "robot": (
         "PRESETS",
         "Arm",
+        "BaseChoices",
         "BasePose",
+        "BaseRange",
         "Interval",
         "JointLimits",
         "LinkShape",
@@ -71,6 +76,7 @@ _ROOMS = {
     ),
     "synthesis": ("NotFoundError", "Solution", "Status", "explain", "motions", "solve", "verify"),
     "task": (
+        "Approach",
         "Objective",
         "Obstacle",
         "PointTarget",
@@ -86,8 +92,11 @@ _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
 
 __all__ = [
     "PRESETS",
+    "Approach",
     "Arm",
+    "BaseChoices",
     "BasePose",
+    "BaseRange",
     "Box",
     "Capsule",
     "GeometryError",

@@ -169,6 +169,8 @@ def _targets_missed(task: Task) -> list[object]:
             "miss": None,
             "tolerance": target.tolerance,
             "within_tolerance": False,
+            "approach": target.approach,
+            "astray": None,
             "clearance": None,
             "joints": None,
             "alternatives": [],

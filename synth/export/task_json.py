@@ -6,6 +6,7 @@ verified again with no other file.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +15,7 @@ from synth.geometry import Box
 
 if TYPE_CHECKING:
     from synth.robot import Interval, LinkShape, Robot
-    from synth.task import Obstacle, Task
+    from synth.task import Obstacle, TargetTable, Task
 
 
 def task_to_json(task: Task) -> dict[str, object]:
@@ -29,18 +30,30 @@ def task_to_json(task: Task) -> dict[str, object]:
         "topology": task.topology.value,
         "objective": task.objective.value,
         "targets": [
-            {"name": name, "position": position, "tolerance": tolerance, "weight": weight}
-            for name, position, tolerance, weight in zip(
+            {"name": name, "position": position, "tolerance": tolerance, "weight": weight} | approach
+            for name, position, tolerance, weight, approach in zip(
                 table.names,
                 table.positions.tolist(),
                 table.tolerances.tolist(),
                 table.weights.tolist(),
+                _approaches(table),
                 strict=True,
             )
         ],
         "obstacles": [_obstacle(obstacle) for obstacle in task.obstacles],
         "current": None if task.current is None else {"arcs": arcs_to_json(task.current)},
     }
+
+
+def _approaches(table: TargetTable) -> list[dict[str, object]]:
+    """Return what is said of the direction of arrival at each target; nothing where there is none."""
+    if table.approaches is None:
+        return [{}] * len(table)
+    rows = table.approaches.tolist()
+    return [
+        {} if math.isnan(tolerance) else {"approach": {"direction": direction, "tolerance": tolerance}}
+        for *direction, tolerance in rows
+    ]
 
 
 def arcs_to_json(shape: LinkShape) -> list[object]:

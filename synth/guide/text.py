@@ -19,7 +19,7 @@ from synth.task import DEFAULT_TOLERANCE
 
 if TYPE_CHECKING:
     from synth.guide.markers import Guide
-    from synth.synthesis import Design, Solution
+    from synth.synthesis import Design, Solution, TargetResult
     from synth.task import Task
 
 FOUND, MISSED, BULLET = "✓", "✗", "•"
@@ -212,6 +212,14 @@ def _counted(count: int, what: str) -> str:
     return f"{count} {what}" if count == 1 else f"{count} {what}s"
 
 
+def _direction_told(target: TargetResult) -> str:
+    """Return by how much the rigid link points beside the direction asked for, if one is."""
+    if target.approach is None:
+        return ""
+    off, allowed = (rounded_up(angle, Unit.DEG, 2) for angle in (target.astray, target.approach.tolerance))
+    return f"  direction {off} of {allowed} deg off"
+
+
 def _target_lines(task: Task, design: Design) -> list[str]:
     """Return a line for each target, names and numbers in columns; of many targets the worst only."""
     lines, count, shown = [], len(task.targets), None
@@ -229,6 +237,6 @@ def _target_lines(task: Task, design: Design) -> list[str]:
         lines.append(
             f"{sign} {target.name:<{width}}  {word:7}  "
             f"miss {rounded_up(target.miss, digits=3):>8} of {tolerance_told(target.tolerance)}  "
-            f"joints {theta1:z7.2f}, {theta2:z7.2f} deg{clear}"
+            f"joints {theta1:z7.2f}, {theta2:z7.2f} deg{_direction_told(target)}{clear}"
         )
     return lines

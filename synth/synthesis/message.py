@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.errors import SynthError
-from synth.rounding import rounded_up
+from synth.rounding import Unit, rounded_up
 from synth.synthesis.starts import exact_arms
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from synth.synthesis.check import Verification
     from synth.synthesis.solution import Solution, Status
     from synth.synthesis.wanted import Design
     from synth.task import Task
@@ -87,11 +88,17 @@ def _what_misses(task: Task, design: Design) -> list[str]:
     check = design.verification
     order = np.argsort(-check.misses / task.tolerances)
     order = order[~np.array(check.within_tolerance)[order]]
-    sentences = [
-        f"{task.targets[i].name} misses by {rounded_up(check.misses[i], digits=2)} mm"
-        for i in order[:3].tolist()
-    ]
+    sentences = [_how_missed(task, check, index) for index in order[:3].tolist()]
     return sentences if len(order) <= 3 else [*sentences, f"and {len(order) - 3} more"]
+
+
+def _how_missed(task: Task, check: Verification, index: int) -> str:
+    """Return by how much a target is missed, or by how much the rigid link points elsewhere there."""
+    target, miss, astray = task.targets[index], check.misses[index], check.astray[index]
+    if miss <= target.tolerance and target.approach is not None and astray > target.approach.tolerance:
+        off, allowed = (rounded_up(angle, Unit.DEG, 2) for angle in (astray, target.approach.tolerance))
+        return f"{target.name} is arrived at {off} deg beside its direction, where {allowed} deg are allowed"
+    return f"{target.name} misses by {rounded_up(miss, digits=2)} mm"
 
 
 def _why_not_exact(task: Task) -> tuple[str, ...]:

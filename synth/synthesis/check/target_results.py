@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from synth.robot import Arm
     from synth.synthesis.check.verification import Verification
-    from synth.task import Task
+    from synth.task import Approach, Task
 
 
 @compared_by_value
@@ -31,6 +31,7 @@ class TargetResult:
         reached: Where the end effector gets to, shape (3,).
         miss: Distance between the two, m; infinite where there is no shape.
         within_tolerance: Whether the target is reached.
+        approach: In which direction the rigid link is to point there; None if that is all one.
         astray: By how much the rigid link points elsewhere than asked, rad; NaN if no direction is asked for.
         clearance: How far the arm at least keeps from the obstacles there, m; told up to 0.1 m, and
             infinite without obstacles.
@@ -45,6 +46,7 @@ class TargetResult:
     reached: FloatArray
     miss: float
     within_tolerance: bool
+    approach: Approach | None
     astray: float
     clearance: float
     joints: FloatArray
@@ -91,6 +93,7 @@ def target_results(
             reached=frozen(check.reached[index]),
             miss=float(check.misses[index]),
             within_tolerance=check.within_tolerance[index],
+            approach=task.targets[index].approach,
             astray=float(check.astray[index]),
             clearance=float(check.clearances[index]),
             joints=frozen(joints[row][0]),

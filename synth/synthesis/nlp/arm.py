@@ -52,6 +52,7 @@ class SymbolicArm:
 
     Attributes:
         p5: The end effector at each target, in the base frame, shape (n, 3), m.
+        pointing: Direction of the rigid link there, from axis 2 to P5, shape (n, 3).
         bending_energy: Of the link, in units of one over the least bend radius.
     """
 
@@ -75,13 +76,11 @@ class SymbolicArm:
         base, second = robot.joint_limits.base, robot.joint_limits.second
         theta1 = self._theta1 = x.new("theta1", (count, 1), base.lower, base.upper)
         theta2 = x.new("theta2", (count, 1), second.lower, second.upper)
-        px, py, pz = (
-            centre[axis] + radius * (ca.sin(theta2) * v[axis] - ca.cos(theta2) * t[axis]) for axis in range(3)
-        )
+        x2, y2, z2 = (ca.sin(theta2) * v[axis] - ca.cos(theta2) * t[axis] for axis in range(3))
+        px, py, pz = (centre[axis] + radius * along for axis, along in enumerate((x2, y2, z2)))
         self._unturned_p5 = ca.horzcat(px, py, pz)  # at joint 1 = 0
-        self.p5 = ca.horzcat(
-            ca.cos(theta1) * px - ca.sin(theta1) * py, ca.sin(theta1) * px + ca.cos(theta1) * py, pz
-        )
+        self.p5 = _turned(theta1, px, py, pz)
+        self.pointing = _turned(theta1, x2, y2, z2)
 
     def _link(self, curvature: ca.SX, arc_length: ca.SX) -> tuple[dict[int, _Piece], ca.SX, ca.SX]:
         """Follow the arcs from P2 to the link's end, under the limits of bending and the floor.
@@ -198,3 +197,8 @@ class SymbolicArm:
             along = end - start
             start = start + robot.link.diameter / ca.norm_2(along) * along
         return _Piece([start, end], ca.SX(0.5 * robot.rigid_link.diameter))
+
+
+def _turned(theta1: ca.SX, x: ca.SX, y: ca.SX, z: ca.SX) -> ca.SX:
+    """Return vectors turned by joint 1, shape (n, 3)."""
+    return ca.horzcat(ca.cos(theta1) * x - ca.sin(theta1) * y, ca.sin(theta1) * x + ca.cos(theta1) * y, z)

@@ -44,6 +44,7 @@ def packed(
         "theta2": joints[:, 1],
         "miss": misses,
         "overlap": np.zeros(overlaps),
+        "astray": np.zeros(len(joints) if task.approaches_in_base is not None else 0),
         "worst": np.max(weights * np.sum(misses**2, axis=1)),
     }
 

@@ -18,6 +18,7 @@ Unknowns, in metres and radians but for the curvatures, which are in units of th
     theta1      of each target, and theta2                     2 n
     miss        vector from each target to P5                  3 n
     overlap     depth in obstacles allowed at each target      n + 1, where planes are given
+    astray      angle allowed beyond the directions asked for  n, where there are any
     worst       largest weighted (miss / tolerance)^2          1, for the minimax objective
 
 Objective: the weighted (miss / tolerance)^2, summed or worst, plus a small multiple of the bending
@@ -57,6 +58,8 @@ _GENTLENESS = 1e-4
 # length, m, because the solver scales the objective down by its steepest slope.
 _LARGE_MISS = 0.01
 _OVERLAP_UNIT = 1e-3
+# An angle beyond the direction asked for costs as much as a depth; its cosine is measured in units of this.
+_ASTRAY_UNIT, _WITHIN = 1e-3, 1e-8
 # The objective is counted in that of the start, so that the solver meets numbers of about one, but no finer
 # than this: a start may be the answer, and its miss then is only rounding.
 _FINEST_UNIT = 1.0
@@ -121,14 +124,20 @@ class SynthesisNlp:
         for plane in planes:
             arm.keep_apart(plane, _OVERLAP_UNIT * overlap[plane.target])  # ANY_TARGET is the last
 
+        directions, cosines = ca.SX.sym("directions", count, 3), ca.SX.sym("cosines", count)
+        astray = x.new("astray", (count if structure.has_approaches else 0, 1), 0.0, math.inf)
+        if structure.has_approaches:
+            g.between(ca.sum2(arm.pointing * directions) - cosines + _ASTRAY_UNIT * astray, 0.0, math.inf)
+
         weighted = ca.sum2(miss**2) * weights
         if structure.objective is Objective.MINIMAX:
             misses = x.new("worst", (1, 1), 0.0, math.inf)
             g.between(weighted - misses, -math.inf, 0.0)
         else:
             misses = ca.sum1(weighted)
-        objective = misses + _GENTLENESS * arm.bending_energy + steepest * ca.sum1(overlap)
-        parameters = ca.vertcat(ca.vec(positions), weights, floor, steepest)
+        too_much = steepest * (ca.sum1(overlap) + ca.sum1(astray))
+        objective = misses + _GENTLENESS * arm.bending_energy + too_much
+        parameters = ca.vertcat(ca.vec(positions), weights, floor, steepest, ca.vec(directions), cosines)
         self._x = x
         self._ipopt = Ipopt(x, g, parameters, objective, near=near, nearly_clear=bool(planes))
 
@@ -150,12 +159,24 @@ class SynthesisNlp:
         """
         weights = task.weights / task.tolerances**2 / _unit(task, start, joints)
         floor, steepest = task.floor_in_base or 0.0, 2.0 * _LARGE_MISS * _OVERLAP_UNIT * float(weights.max())
-        parameters = np.concatenate([task.positions_in_base.T.ravel(), weights, [floor, steepest]])
+        parameters = np.concatenate(
+            [task.positions_in_base.T.ravel(), weights, [floor, steepest], *_directions(task)]
+        )
         values, status, iterations = self._ipopt.solve(
             self._x.vector_of(packed(task, start, joints, self._overlaps, weights)), parameters, watch
         )
         arm, found_joints = unpacked(task, self._x.by_name(values))
         return NlpAnswer(arm, found_joints, status, iterations)
+
+
+def _directions(task: Task) -> tuple[FloatArray, FloatArray]:
+    """Return the directions asked for, a column after the other, and the least cosines; 0 and -1 for none."""
+    rows = task.approaches_in_base
+    if rows is None:
+        return np.zeros(3 * len(task.targets)), np.full(len(task.targets), -1.0)
+    # A little within, by what the solver may overstep.
+    cosines = np.minimum(np.cos(rows[:, 3]) + _WITHIN, 0.5 + 0.5 * np.cos(rows[:, 3]))
+    return np.nan_to_num(rows[:, :3]).T.ravel(), np.nan_to_num(cosines, nan=-1.0)
 
 
 def _unit(task: Task, arm: Arm, joints: FloatArray) -> float:

@@ -18,6 +18,7 @@ class Structure:
         robot: The hardware.
         count: Number n of targets.
         has_floor: Whether there is a floor, at whatever height.
+        has_approaches: Whether directions of arrival are asked for, at some target.
         topology: Kind of shape asked for.
         objective: Norm of the misses.
     """
@@ -25,6 +26,7 @@ class Structure:
     robot: Robot
     count: int
     has_floor: bool
+    has_approaches: bool
     topology: Topology
     objective: Objective
 
@@ -32,5 +34,10 @@ class Structure:
     def of(cls, task: Task) -> Structure:
         """Return the structure of a task."""
         return cls(
-            task.robot, len(task.targets), task.floor_in_base is not None, task.topology, task.objective
+            task.robot,
+            len(task.targets),
+            task.floor_in_base is not None,
+            task.approaches_in_base is not None,
+            task.topology,
+            task.objective,
         )

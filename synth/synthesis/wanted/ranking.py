@@ -121,8 +121,15 @@ def _order_of(table: FloatArray, changes: Sequence[float | None]) -> NDArray[np.
 
 
 def objective(task: Task, design: Design) -> float:
-    """Return the task's objective: the weighted (miss / tolerance)^2, summed or worst."""
-    weighted = task.weights * (design.verification.misses / task.tolerances) ** 2
+    """Return the task's objective: the weighted (miss / tolerance)^2, summed or worst.
+
+    What points farther beside the direction asked for than it may counts like a miss, by its own tolerance.
+    """
+    relative = (design.verification.misses / task.tolerances) ** 2
+    if task.table.approaches is not None:
+        allowed = task.table.approaches[:, 3]
+        relative = relative + np.nan_to_num(np.maximum(design.verification.astray / allowed - 1.0, 0.0)) ** 2
+    weighted = task.weights * relative
     return float(weighted.max() if task.objective is Objective.MINIMAX else weighted.sum())
 
 
