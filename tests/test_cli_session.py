@@ -49,7 +49,7 @@ def test_a_sheet_that_cannot_be_drawn_costs_no_answer(tmp_path, error):
     [
         ("synth.synthesis.starts.screening.estimated_misses", False),
         ("synth.synthesis.run.message", True),
-        ("synth.guide.text.summary_text", True),
+        ("synth.guide.text.points_sentence", True),
         ("synth.export.files.solution_to_json", None),
         ("synth.task.reading.load_task", None),
     ],

@@ -14,7 +14,7 @@ from synth.checks import refuse_unless
 from synth.guide.posture import HoldPosture, hold_posture
 from synth.guide.sensitivity import ShapeTolerance, shape_tolerance
 from synth.robot import BasePose
-from synth.synthesis import MOST_MOTIONS, Design, hand_forgiveness, motions
+from synth.synthesis import Design, ways_and_forgiveness
 from synth.task import Task
 
 if TYPE_CHECKING:
@@ -136,11 +136,9 @@ def make_guide(task: Task, design: Design) -> Guide:
 @lru_cache(maxsize=8)
 def _guide(task: Task, design: Design) -> Guide:
     """Return the guide: text, JSON and sheet of a run ask for the same one."""
-    arm, check, figures = design.arm, design.verification, design.figures
+    arm, check = design.arm, design.verification
     stations, posture = _stations(arm.shape.length), hold_posture(task, arm)
-    forgiveness = None
-    if check.found:
-        forgiveness = figures.forgiveness if figures else hand_forgiveness(task, arm, check.joints)
+    ways, forgiveness = ways_and_forgiveness(task, design)
     return Guide(
         posture=posture,
         hold=place(arm, stations, posture.joint1),
@@ -150,7 +148,7 @@ def _guide(task: Task, design: Design) -> Guide:
         met=check.found,
         tolerance=shape_tolerance(task, design),
         forgiveness=forgiveness,
-        ways=motions(task, design) if check.found and len(task.targets) <= MOST_MOTIONS else (),
+        ways=ways,
     )
 
 

@@ -14,11 +14,11 @@ import numpy as np
 from synth.errors import in_a_line
 from synth.synthesis.all_targets import WholeTask, for_all_targets, verified_in_time
 from synth.synthesis.bound import why_impossible
-from synth.synthesis.message import message, why_no_better
+from synth.synthesis.message import Status, message, why_no_better
 from synth.synthesis.present_shape import changing_little
 from synth.synthesis.proving import Certifier
 from synth.synthesis.search import ALTERNATIVES, Search
-from synth.synthesis.solution import Solution, Status
+from synth.synthesis.solution import Solution
 from synth.synthesis.wanted import Design, best_of
 
 if TYPE_CHECKING:

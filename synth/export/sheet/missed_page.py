@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from synth.export.sheet.page import MARGIN, WIDTH
 from synth.export.sheet.target_table import target_table
 from synth.export.sheet.typesetting import width
-from synth.guide import help_told, proof_sentence, reasons_told
-from synth.synthesis import Status
+from synth.sentences import BULLET
+from synth.synthesis import Status, help_told, proof_sentence, reasons_told
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -64,7 +64,7 @@ def _list(page: Page, y: float, heading: str, lines: Sequence[str]) -> float:
     page.text(MARGIN, y, heading, 9.5, weight="bold")
     y += 4.6
     for line in lines:
-        page.text(MARGIN, y, "•", 7.0)
+        page.text(MARGIN, y, BULLET, 7.0)
         y = (
             page.paragraph(
                 MARGIN + 3.0, y, line, WIDTH - 2 * MARGIN - 3.0, most=_MOST_LINES, pitch=_PITCH, size=7.0

@@ -9,6 +9,7 @@ import numpy as np
 
 from synth.guide.loop.checking import Verdict
 from synth.rounding import Unit, rounded_down, rounded_up
+from synth.sentences import bulleted, headed
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
@@ -49,7 +50,7 @@ def check_text(
     bullets += axis_sentences(check.fit)
     if settings is not None:
         bullets += settings_sentences(settings)
-    return "\n".join([headline, "=" * min(len(headline), 79), *(f"• {bullet}" for bullet in bullets)])
+    return headed(headline, map(bulleted, bullets))
 
 
 def headline_sentence(check: Check) -> str:
