@@ -19,6 +19,7 @@ import synth
 from synth.errors import Mistake
 from synth.export import write_files
 from synth.geometry import Box, Capsule, Sphere, planes_through, spheres_through
+from synth.geometry.circle import CircleAboutAxis
 from synth.guide import make_guide
 from synth.guide.loop.checking import check_arm
 from synth.guide.loop.forgiving import most_forgiving
@@ -141,5 +142,6 @@ def _small():
     rotation, position = arm.shape.end_frame()
     link_to_pose(ROBOT.link, position, rotation[:, 0], current=arm.shape)
     why_no_link(ROBOT.link, position, rotation[:, 0])
+    CircleAboutAxis.from_points(arm.circle.axis_points(0.1, 0.2).repeat(2, axis=0)[1:])
     arm.circle.distance([[0.3, 0.2, 0.1]])
     (Sphere([0, 0, 1], 1), Capsule([[0, 0, 0], [1, 1, 1]], 1), Box([0, 0, 0], [1, 1, 1]), Mistake("wrong"))

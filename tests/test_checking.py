@@ -15,7 +15,7 @@ from synth.guide.loop.hand import Hand, errors
 from synth.guide.loop.outlook import outlook
 from synth.guide.loop.settings import best_settings, with_settings
 from synth.guide.loop.trying_on import value_of_trying
-from synth.measurement import StandingArm, fit_arm
+from synth.measurement import StandingArm, fit_arm, joints_closest_to, joints_following
 from synth.synthesis import Design, solve, verify
 
 HAND = Hand()
@@ -57,8 +57,8 @@ def test_a_link_off_its_place_is_corrected(scene):
     check = check_arm(task, designs, fit(scene, true, rng=np.random.default_rng(0)))
     assert check.verdict is Verdict.CORRECT
     after = true.moved(np.concatenate([check.correction.move, check.correction.rotate]))
-    before = misses(true, true.closest(task.positions_in_base), task).max()
-    assert misses(after, after.closest(task.positions_in_base), task).max() < 0.35 * before
+    before = misses(true, joints_closest_to(true, task.positions_in_base), task).max()
+    assert misses(after, joints_closest_to(after, task.positions_in_base), task).max() < 0.35 * before
     assert check.correction.shape is not None
     assert "move the link's end" in check_text(check)
 
@@ -108,7 +108,7 @@ def test_an_aim_meets_the_task_and_is_nearer_than_the_design(scene):
     task, designs, wanted = scene
     arm = wanted.moved(OFF)
     weights = np.ones(len(task.targets))
-    joints = arm.closest(task.positions_in_base)
+    joints = joints_closest_to(arm, task.positions_in_base)
     _, move, there = best_aims(
         arm, [d.arm for d in designs], joints, task.positions_in_base, weights, HAND, 0.05
     )[0]
@@ -126,7 +126,7 @@ def test_the_cost_of_an_aim_is_the_mean_square_over_errors_of_the_hand(scene):
     task, _, wanted = scene
     # Of a hand so fine that the surface is flat over its errors.
     hand = replace(HAND, floor=(0.25e-3, np.radians(0.085)))
-    joints, limits = wanted.closest(task.positions_in_base), ROBOT.joint_limits
+    joints, limits = joints_closest_to(wanted, task.positions_in_base), ROBOT.joint_limits
     # A joint at its limit is held for half of the errors only.
     inner = (joints[:, 1] > limits.second.lower + 0.05) & (joints[:, 1] < limits.second.upper - 0.05)
     assert inner.sum() >= 2
@@ -136,7 +136,7 @@ def test_the_cost_of_an_aim_is_the_mean_square_over_errors_of_the_hand(scene):
     arms = arms.displaced(
         np.hstack([np.zeros((4000, 5)), errors(hand.floor, 4000, np.random.default_rng(0))])
     )
-    squares = np.sum((arms.forward(arms.following(there, targets)) - targets) ** 2, axis=(1, 2))
+    squares = np.sum((arms.forward(joints_following(arms, there, targets)) - targets) ** 2, axis=(1, 2))
     assert np.mean(squares) == pytest.approx(cost, rel=0.1)
 
 
@@ -153,7 +153,7 @@ def test_towards_a_design_is_a_turn_about_axis_1_and_a_roll_away_from_it(scene):
 def test_more_tries_are_worth_more(scene):
     task, _, wanted = scene
     measured = fit(scene, wanted.moved(OFF))
-    joints = wanted.closest(task.positions_in_base)
+    joints = joints_closest_to(wanted, task.positions_in_base)
     values = [
         value_of_trying(measured, -OFF, joints, task.positions_in_base, task.tolerances, HAND, k)[0]
         for k in (1, 2, 3)

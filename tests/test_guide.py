@@ -30,7 +30,7 @@ from synth.guide.instructions import (
 )
 from synth.guide.markers import SPACING, _stations, place
 from synth.guide.posture import hold_posture
-from synth.robot import ArmBody, BasePose, Interval, JointLimits
+from synth.robot import ArmBody, BasePose, Interval, JointLimits, clear_of_obstacles
 from synth.synthesis import (
     Design,
     verify,
@@ -160,7 +160,7 @@ def test_where_no_posture_is_clear_the_sentence_says_so():
 
 def clearance(task, posture):
     joints = np.array([[posture.joint1, posture.joint2]])
-    return float(ArmBody(ARM).from_obstacles(joints, task.solids).min())
+    return float(clear_of_obstacles(ArmBody(ARM), joints, task.solids).min())
 
 
 def test_axis_2_is_told_as_elevation_and_heading():

@@ -2,7 +2,8 @@
 
 from synth.robot.arm import Arm, JointBranches
 from synth.robot.base_pose import BasePose
-from synth.robot.clearance import MOST_CLEARANCE, ArmBody
+from synth.robot.body import ArmBody
+from synth.robot.clearance import MOST_CLEARANCE, clear_of_obstacles, clear_of_tube, tube_clear_of_itself
 from synth.robot.closest_joints import closest_joints
 from synth.robot.hardware import (
     PRESETS,
@@ -56,6 +57,8 @@ __all__ = [
     "arc_motion",
     "chain_end",
     "chain_points",
+    "clear_of_obstacles",
+    "clear_of_tube",
     "closest_joints",
     "into_turn",
     "link_to_pose",
@@ -63,6 +66,7 @@ __all__ = [
     "no_triangle",
     "pose_miss",
     "stepped",
+    "tube_clear_of_itself",
     "turned",
     "why_no_link",
 ]

@@ -57,6 +57,14 @@ def ending(status: Status, designs: Sequence[Design]) -> str:
     return f"{_REACHED_WITHOUT_WAY} {'; '.join([*no_way[:_REASONS], *more])}"
 
 
+def note_on_ways(designs: Sequence[Design], *, interrupted: bool) -> str:
+    """Return that ways may be missing for lack of time alone; nothing if that cannot be."""
+    missing = designs and any(not way.found for way in designs[0].ways)
+    if not (missing and interrupted):
+        return ""
+    return "the time was up before all ways from target to target had been looked for"
+
+
 def why_no_better(task: Task, designs: Sequence[Design], blocked: Sequence[Design]) -> tuple[str, ...]:
     """Return sentences that say why a search found no more, as far as that is known.
 

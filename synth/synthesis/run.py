@@ -14,7 +14,7 @@ import numpy as np
 from synth.errors import in_a_line
 from synth.synthesis.all_targets import WholeTask, for_all_targets, verified_in_time
 from synth.synthesis.bound import why_impossible
-from synth.synthesis.message import Status, message, why_no_better
+from synth.synthesis.message import Status, message, note_on_ways, why_no_better
 from synth.synthesis.present_shape import changing_little
 from synth.synthesis.proving import Certifier
 from synth.synthesis.search import ALTERNATIVES, Search
@@ -22,7 +22,7 @@ from synth.synthesis.solution import Solution
 from synth.synthesis.wanted import Design, best_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from synth.synthesis.bound import Bound
     from synth.task import Task
@@ -137,6 +137,7 @@ class Run:
         words = status.sentence
         with self.kept():
             words = message(task, status, designs, (*self._why_broken(), *reasons))
+        no_time = note_on_ways(designs, interrupted=self.watch.interrupted)
         return Solution(
             task,
             status,
@@ -147,16 +148,9 @@ class Run:
             self.search.starts,
             self.watch.timing(),
             self._bound_for(designs),
-            notes=(*self.notes, *filter(None, [whole.note, self._ways_note(designs)])),
+            notes=(*self.notes, *filter(None, [whole.note, no_time])),
             breakdown="".join(traceback.format_exception(self.broke_off)) if self.broke_off else "",
         )
-
-    def _ways_note(self, designs: Sequence[Design]) -> str:
-        """Return that ways may be missing for lack of time alone; nothing if none is missing."""
-        missing = designs and any(not way.found for way in designs[0].ways)
-        if not (missing and self.watch.interrupted):
-            return ""
-        return "the time was up before all ways from target to target had been looked for"
 
     def _why_broken(self) -> tuple[str, ...]:
         return () if self.broke_off is None else (f"the search broke off: {in_a_line(self.broke_off)}",)

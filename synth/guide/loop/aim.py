@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.measurement import cross
+from synth.measurement import cross, joints_closest_to, joints_following, left_to_joints
 from synth.robot import turned
 
 if TYPE_CHECKING:
@@ -53,8 +53,8 @@ def _residuals(
 ) -> tuple[FloatArray, FloatArray]:
     """Return residuals of the cost, (k, r), m, and the joints, (k, n, 2), of displacements (k, 6)."""
     there = arm.moved(moves)
-    joints = there.following(joints, targets, steps)
-    miss, free, _ = there.left_to_joints(joints, targets)
+    joints = joints_following(there, joints, targets, steps)
+    miss, free, _ = left_to_joints(there, joints, targets)
     first, second = free[..., 0], free[..., 1]
     a = np.einsum("...i,...i", first, first) + _NEARLY_SINGULAR**2
     b = np.einsum("...i,...i", first, second)
@@ -174,6 +174,6 @@ def best_aims(
     for move in moves[:_MOST_DESIGNS]:
         if size(move) > _TOO_FAR:
             break
-        starts.append((move, arm.moved(move).closest(targets)))
+        starts.append((move, joints_closest_to(arm.moved(move), targets)))
     found = [aimed(arm, move, start, targets, weights, hand, share) for move, start in starts]
     return sorted(((cost, move, there) for move, there, cost in found), key=lambda aim: aim[0])

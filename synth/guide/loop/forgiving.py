@@ -9,7 +9,7 @@ import numpy as np
 
 from synth.guide.loop.aim import aimed
 from synth.guide.loop.hand import Hand, errors
-from synth.measurement import StandingArm
+from synth.measurement import StandingArm, joints_following
 from synth.robot import Interval, link_to_pose
 from synth.synthesis import Design, verify
 
@@ -32,7 +32,7 @@ def loss_at_floor(task: Task, arm: StandingArm, joints: FloatArray, hand: Hand) 
         hand: The hand: at its floor, joints at their best afterwards.
     """
     arms = arm.moved(errors(hand.floor, _SAMPLES, np.random.default_rng(0)))
-    reached = arms.forward(arms.following(joints, task.positions_in_base))
+    reached = arms.forward(joints_following(arms, joints, task.positions_in_base))
     misses = np.linalg.norm(reached - task.positions_in_base, axis=-1)
     return float((misses / task.tolerances).max(axis=1).mean() * task.tolerances.min())
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.guide.loop.hand import errors
+from synth.measurement import joints_following
 
 if TYPE_CHECKING:
     from synth.guide.loop.hand import Hand
@@ -105,7 +106,7 @@ def after(
         seed: Of the errors.
     """
     measured = arms.displaced(fit.errors(len(arms.end), seed))
-    best = measured.following(joints, targets, _STEPS)
+    best = joints_following(measured, joints, targets, _STEPS)
     return Outlook(joints, np.linalg.norm(arms.forward(best) - targets, axis=-1), tolerances)
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from synth.arrays import FloatArray, compared_by_value, frozen
 from synth.geometry import Invariants, SweptCircle
 from synth.measurement.markers.standing_arm import rotation_matrix
+from synth.measurement.markers.standing_joints import joints_closest_to, joints_following
 from synth.robot import Interval, JointLimits
 from synth.rounding import rounded_up, told_apart
 
@@ -161,7 +162,7 @@ def _misses(
 ) -> tuple[FloatArray, FloatArray]:
     """Return misses, shape (..., n, 3), m, and the joints there: those given, or the best near some."""
     if joints is None:
-        there = arm.following(near, points, steps)
+        there = joints_following(arm, near, points, steps)
         return arm.forward(there) - points, there
     return arm.forward(np.broadcast_to(joints, (*arm.end.shape[:-1], *joints.shape))) - points, joints
 
@@ -170,7 +171,7 @@ def _fit(
     points: FloatArray, joints: FloatArray | None, arm: StandingArm, sigma: float
 ) -> tuple[StandingArm, FloatArray, float, FloatArray]:
     """Return the best arm near a start, its information, chi-square, and the misses of the points, m."""
-    near = arm.closest(points) if joints is None else joints
+    near = joints_closest_to(arm, points) if joints is None else joints
     limits, arm = arm.limits, replace(arm, limits=_ANY_TURN)
     steps = np.vstack([np.zeros(UNKNOWNS), _SMALL * np.eye(UNKNOWNS), -_SMALL * np.eye(UNKNOWNS)])
     damping = 1e-3
@@ -239,7 +240,7 @@ def _too_little_swept(
     points: FloatArray, joints: FloatArray | None, arm: StandingArm, rms: float, most_rms: float
 ) -> str:
     """Return that a sweep does not determine the surface, and what to move more."""
-    angles = arm.closest(points)[:, 1] if joints is None else joints[:, 1]
+    angles = joints_closest_to(arm, points)[:, 1] if joints is None else joints[:, 1]
     seen, whole = float(np.ptp(angles)), arm.limits.second.upper - arm.limits.second.lower
     would, asked = told_apart(rms, most_rms, digits=2)
     return (

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import compared_by_value
-from synth.robot import Arm, ArmBody
+from synth.robot import Arm, ArmBody, clear_of_obstacles, clear_of_tube, tube_clear_of_itself
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -78,13 +78,13 @@ def _misses(task: Task, arm: Arm, candidates: FloatArray, targets: FloatArray) -
 def _rod_from_tube(body: ArmBody, theta2: FloatArray) -> FloatArray:
     """Return how far the rod keeps from the tube, shape (n,), m: lower bounds, less close ones if many."""
     if len(theta2) <= _TOGETHER:
-        return body.rod_from_tube(theta2)
+        return clear_of_tube(body, theta2)
     edges = np.linspace(theta2.min(), theta2.max(), _RANGES + 1)
-    of_ranges = body.rod_from_tube(edges[:-1], edges[1:], enough=_CLEARLY)
+    of_ranges = clear_of_tube(body, edges[:-1], edges[1:], enough=_CLEARLY)
     bounds = of_ranges[np.clip(np.searchsorted(edges, theta2, side="right") - 1, 0, _RANGES - 1)]
     close = np.flatnonzero(~(bounds >= 0.0))
     for part in np.split(close, range(_TOGETHER, len(close), _TOGETHER)):
-        bounds[part] = body.rod_from_tube(theta2[part])
+        bounds[part] = clear_of_tube(body, theta2[part])
     return bounds
 
 
@@ -109,12 +109,12 @@ class Clearances:
         body, solids, shape = ArmBody(arm), seen_by(task, arm), candidates.shape[:-1]
         joints = candidates.reshape(-1, 2)
         parts = np.split(joints, range(_TOGETHER, len(joints), _TOGETHER))
-        from_obstacles = np.concatenate([body.from_obstacles(part, solids) for part in parts])
+        from_obstacles = np.concatenate([clear_of_obstacles(body, part, solids) for part in parts])
         rod_from_tube = _rod_from_tube(body, joints[:, 1])
         return cls(
             from_obstacles.reshape(*shape, len(solids), 2),
             rod_from_tube.reshape(shape),
-            body.tube_from_itself(),
+            tube_clear_of_itself(body),
         )
 
     @property
@@ -142,6 +142,6 @@ def clear_of_everything(task: Task, arm: Arm, joints: FloatArray) -> NDArray[np.
     body, solids, flat = ArmBody(arm), seen_by(task, arm), joints.reshape(-1, 2)
     parts = np.split(flat, range(_TOGETHER, len(flat), _TOGETHER))
     # A way that ends where it starts is one of which nobody asks how deep it is in something.
-    clear = [body.from_obstacles(part, solids, end=part, enough=0.0) >= -LENGTH_SLACK for part in parts]
+    clear = [clear_of_obstacles(body, part, solids, end=part, enough=0.0) >= -LENGTH_SLACK for part in parts]
     of_itself = _rod_from_tube(body, flat[:, 1]) >= -LENGTH_SLACK
     return (np.concatenate(clear).all(axis=(1, 2)) & of_itself).reshape(joints.shape[:-1])

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.checks import refuse_unless
-from synth.robot import ArmBody, turned
+from synth.robot import ArmBody, clear_of_obstacles, clear_of_tube, turned
 from synth.synthesis.check import joints_reaching, seen_by
 from synth.synthesis.wanted.design import Design
 from synth.synthesis.wanted.margins import joint_shortfalls
@@ -147,7 +147,7 @@ class _Surroundings:
         clear = self._clear_of_itself(start[:, 1], end[:, 1])
         some = np.flatnonzero(clear)
         if self._solids and len(some):
-            least = self._body.from_obstacles(start[some], self._solids, end=end[some], enough=0.0)
+            least = clear_of_obstacles(self._body, start[some], self._solids, end=end[some], enough=0.0)
             clear[some] = least.min(axis=(1, 2)) >= self._body.clear
         return clear
 
@@ -156,7 +156,7 @@ class _Surroundings:
         # Mostly all is clear between the least and the largest angle: one question in place of n.
         whole = np.array([min(start.min(), end.min())]), np.array([max(start.max(), end.max())])
         for ways in (whole, (start, end)):
-            least = np.minimum(self._body.rod_from_tube(*ways, enough=0.0), self._over_floor(*ways))
+            least = np.minimum(clear_of_tube(self._body, *ways, enough=0.0), self._over_floor(*ways))
             if (least >= self._body.clear).all():
                 return np.ones(len(start), dtype=np.bool_)
         return np.asarray(least >= self._body.clear)
