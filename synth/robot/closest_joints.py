@@ -13,9 +13,9 @@ cannot hold the minimum. What is left, mostly one valley, is searched for the ro
 
 q being P5 at theta1 = 0 and theta1 at its best (the envelope theorem: its own change adds nothing).
 
-The secants are our own: `scipy.optimize.elementwise.find_root` gives the same misses to 4e-16 m, in 1.5 times
-the time for 50 points and 0.9 times for 20 000, but `scipy.optimize` takes 0.7 s to import: as long as an easy
-task takes in all.
+The secants are our own: `scipy.optimize.elementwise.find_root` gives the same misses to 4e-16 m, in 1.5
+times the time for 50 points and 0.9 times for 20 000, but to import `scipy.optimize` takes 0.7 s, a good part
+of what an easy task takes in all.
 """
 
 from __future__ import annotations

@@ -28,9 +28,9 @@ length: also beyond L = 2 pi r, up to which it is the theorem of Bae, Bai, Lee, 
 reachability of 3-dimensional paths with a prescribed curvature bound", arXiv 2403.18707. The hole about P2
 closes at L = (pi + 3 arccos(1/3)) r = 6.834 r.
 
-The golden section for the margin is our own: `scipy.optimize.elementwise.find_minimum` wants a point below both
-ends, so not the ends of a curve, and takes 3 times the time for a position and 1.1 times for 2000; both are right
-to 1e-14, and for a few of 20 000 positions it stopped 6e-7 bend radii too early.
+The golden section for the margin is our own: `scipy.optimize.elementwise.find_minimum` wants a point below
+both ends, so not the ends of a curve, and takes 3 times the time for one position and 1.1 times for 2000.
+Both agree to 1e-14, but for some of 20 000 positions it stops 6e-7 bend radii away from the nearest point.
 """
 
 from __future__ import annotations

@@ -119,8 +119,8 @@ def _nearest_to_solid(solid: Solid, start: FloatArray, end: FloatArray) -> Float
     """Return the points of segments, ends of shape (..., 3), that are nearest to a solid, or deepest.
 
     The signed distance from a convex solid is a convex function, so a golden section finds them. It is our
-    own: of nine segments in ten an end is nearest, and `scipy.optimize.elementwise.find_minimum` wants a point
-    below both ends, and took 2.5 to 5 times the time.
+    own: of nine segments in ten an end is nearest, and `scipy.optimize.elementwise.find_minimum` wants a
+    point below both ends, and took 2.5 to 5 times the time.
     """
     lower, upper = np.zeros((*start.shape[:-1], 1)), np.ones((*start.shape[:-1], 1))
     for _ in range(_GOLDEN_STEPS):
