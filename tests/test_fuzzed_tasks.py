@@ -5,8 +5,8 @@ import json
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from right_tasks import INLINE, TASK
 from task_texts import ROBOT, write
-from wrong_tasks import INLINE, TASK
 
 from synth.errors import InputError
 from synth.task import (

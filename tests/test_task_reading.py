@@ -7,8 +7,8 @@ import sys
 
 import numpy as np
 import pytest
+from right_tasks import INLINE, TASK, task
 from task_texts import ROBOT, mistakes_in, write
-from wrong_tasks import INLINE, TASK, task
 
 from synth.robot import PRESETS, Interval, JointLimits, MalleableLink, RigidLink, Robot
 from synth.task import (

@@ -1,8 +1,9 @@
 """Wrong files: every mistake is named with its line and key, and none twice."""
 
 import pytest
+from right_tasks import TASK, inline
 from task_texts import mistakes_in, write
-from wrong_tasks import TASK, WRONG, inline
+from wrong_tasks import WRONG
 
 from synth.task import (
     load_robot,
