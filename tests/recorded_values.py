@@ -22,7 +22,6 @@ from synth.geometry import Box, Capsule, Sphere, planes_through, spheres_through
 from synth.geometry.circle import CircleAboutAxis
 from synth.guide import make_guide
 from synth.guide.loop.checking import check_arm
-from synth.guide.loop.forgiving import most_forgiving
 from synth.guide.loop.settings import best_settings
 from synth.guide.loop.swept_targets import swept_targets
 from synth.measurement import StandingArm, examine, inspect
@@ -90,7 +89,6 @@ def _solved(folder):
     solution = solve(task)
     (make_guide(task, solution.best), solution.targets)
     write_files(solution, folder)
-    most_forgiving(task, solution.designs[:1])
     limit = next(iter(limits_of(task)))
     Release(limit.name, 0.1, 0.1, limit.sentence(0.1), solution.best, limit.relaxed(0.1))
 

@@ -10,7 +10,6 @@ from standing import BARS, HOLD, SIGMA, seen
 from synth.guide.loop.aim import aimed, best_aims, towards
 from synth.guide.loop.check_text import check_text, way_words
 from synth.guide.loop.checking import Verdict, best_joints, check_arm
-from synth.guide.loop.forgiving import loss_at_floor, most_forgiving
 from synth.guide.loop.hand import Hand, errors
 from synth.guide.loop.outlook import outlook
 from synth.guide.loop.settings import best_settings, with_settings
@@ -184,13 +183,6 @@ def test_settings_keep_what_may_not_be_set(scene):
     settings = best_settings(task, ROBOT, measured, designs[0].verification.joints, tool=0.0)
     assert settings.along == settings.radius == 0.0
     assert settings.d35 == pytest.approx(ROBOT.rigid_link.d35.lower)
-
-
-def test_the_most_forgiving_shape_meets_the_task_and_forgives_no_less(scene):
-    task, designs, wanted = scene
-    best = most_forgiving(task, designs)
-    assert best.design.verification.found
-    assert best.loss <= loss_at_floor(task, wanted, designs[0].verification.joints, HAND) + 1e-12
 
 
 @pytest.mark.parametrize(
