@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Self
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-FOUND, MISSED, BULLET = "✓", "✗", "•"
-_WIDTH = 79
+FOUND = "✓"
+MISSED = "✗"
+BULLET = "•"
+_WIDTH = 79  # characters of a terminal that is not set wider
 
 
 class SentenceEnum(Enum):

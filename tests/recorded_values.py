@@ -32,6 +32,7 @@ from synth.robot import Arm, LinkShape, Workspace, link_to_pose, why_no_link
 from synth.synthesis import Release, solve, verify
 from synth.synthesis.bound import prove
 from synth.synthesis.relaxed_limits import limits_of
+from synth.synthesis.solution import Outcome
 from synth.watch import Watch
 
 # These hold symbolic expressions, and a figure: of neither can anybody say whether it is equal to another.
@@ -89,6 +90,7 @@ def _solved(folder):
     solution = solve(task)
     (make_guide(task, solution.best), solution.targets)
     write_files(solution, folder)
+    Outcome(*(getattr(solution, field.name) for field in dataclasses.fields(Outcome)))
     limit = next(iter(limits_of(task)))
     Release(limit.name, 0.1, 0.1, limit.sentence(0.1), solution.best, limit.relaxed(0.1))
 

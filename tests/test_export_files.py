@@ -4,6 +4,8 @@ import csv
 import io
 import json
 import math
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -70,3 +72,16 @@ def test_a_directory_is_prepared_and_left_empty(tmp_path):
     prepare_directory(tmp_path / "a" / "b")
     prepare_directory(str(tmp_path / "a" / "b"))
     assert list((tmp_path / "a" / "b").iterdir()) == []
+
+
+def test_to_draw_a_sheet_loads_no_more_than_it_takes():
+    """To cut fonts to size, which no sheet does, takes a library that is as slow to load as all others."""
+    told = (
+        "import sys; from sheets import GUIDE, SOLUTION; from synth.export.sheet import draw_sheet; "
+        "draw_sheet(SOLUTION, GUIDE); "
+        "print([name for name in ('fontTools.varLib', 'matplotlib.pyplot') if name in sys.modules])"
+    )
+    answer = subprocess.run(
+        [sys.executable, "-c", told], capture_output=True, text=True, check=True, cwd=Path(__file__).parent
+    )
+    assert answer.stdout == "[]\n"

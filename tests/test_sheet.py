@@ -2,10 +2,7 @@
 
 import io
 import math
-import subprocess
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -211,18 +208,6 @@ def test_the_sheet_of_a_task_without_a_way_says_so_first():
     ways = (Motion("t0", "t1", np.zeros((0, 2))), Motion("t1", "t2", np.zeros((2, 2))))
     text = words_of(replace(SOLUTION, designs=(replace(SOLUTION.best, ways=ways),)))
     assert "Found: every target is reached, but no way was found from t0 to t1." in text
-
-
-def test_to_draw_a_sheet_loads_no_more_than_it_takes():
-    """To cut fonts to size, which no sheet does, takes a library that is as slow to load as all others."""
-    told = (
-        "import sys, test_export_files as t; t.draw_sheet(t.SOLUTION, t.GUIDE); "
-        "print([name for name in ('fontTools.varLib', 'matplotlib.pyplot') if name in sys.modules])"
-    )
-    answer = subprocess.run(
-        [sys.executable, "-c", told], capture_output=True, text=True, check=True, cwd=Path(__file__).parent
-    )
-    assert answer.stdout == "[]\n"
 
 
 def test_a_solution_without_a_shape_has_a_sheet_and_no_points():

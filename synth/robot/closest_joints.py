@@ -35,8 +35,9 @@ if TYPE_CHECKING:
 
 # Over joint 2 the miss has few valleys, as it has few harmonics; a full turn's grid has a spacing of 2 deg.
 _GRID = 181
-# A valley may hold several where P5 passes axis 1 closely: it is looked at again eight times as finely.
-_ZOOMS, _FINER = 3, 17
+# A valley may hold several where P5 passes axis 1 closely: it is looked at again, twice.
+_ZOOMS = 3
+_FINER = 17  # points between the neighbours of a grid point: eight times as finely
 # Steps of the bracketed secant method: rounding is reached after about six, twelve at a kink.
 _SECANTS = 12
 _CHUNK = 4096  # points looked at together: their grid stays in the processor's cache

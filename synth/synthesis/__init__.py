@@ -3,15 +3,17 @@
 from synth.synthesis.blocking import explain
 from synth.synthesis.bound import Bound
 from synth.synthesis.check import TargetResult, Verification, Violation, target_results, verify, worst_targets
-from synth.synthesis.message import Status, ending
-from synth.synthesis.relaxed_limits import Release
-from synth.synthesis.shape_text import clearance_told, shape_line
 from synth.synthesis.solution import (
     NotFoundError,
+    Release,
     Solution,
+    Status,
+    clearance_told,
+    ending,
     help_told,
     proof_sentence,
     reasons_told,
+    shape_line,
     showing,
 )
 from synth.synthesis.solve import solve

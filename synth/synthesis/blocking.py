@@ -17,8 +17,8 @@ from synth.checks import refuse_unless
 from synth.robot import BasePose
 from synth.rounding import rounded_up
 from synth.synthesis.check import verify
-from synth.synthesis.relaxed_limits import Release, limits_of, without_limits
-from synth.synthesis.solution import Solution
+from synth.synthesis.relaxed_limits import limits_of, without_limits
+from synth.synthesis.solution import Release, Solution
 from synth.synthesis.solve import follow
 from synth.synthesis.starts import exact_arms
 from synth.watch import Watch

@@ -1,4 +1,4 @@
-"""The limits of a task and its hardware: each relaxed on its own, or all at once; and one that would do."""
+"""The limits of a task and its hardware: each relaxed on its own, or all of them at once."""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
     from synth.geometry import Solid
     from synth.robot import MalleableLink
-    from synth.synthesis.wanted import Design
     from synth.task import Task
 
 _LEAST_PART = 0.4  # of a length or a bend radius that is left, at most relaxed
@@ -39,27 +38,6 @@ class Limit:
     most: float
     relaxed: Callable[[float], Task]
     sentence: Callable[[float], str]
-
-
-@dataclass(frozen=True)
-class Release:
-    """One limit that blocks a task, and how much less of it would do.
-
-    Attributes:
-        limit: Name of the limit.
-        amount: By how much it has to give way, m or rad.
-        share: The same as a share of what the limit is, by which limits are compared.
-        sentence: What would do, for the user.
-        design: A shape that meets the task released so far, with its verification.
-        task: The task released so far.
-    """
-
-    limit: str
-    amount: float
-    share: float
-    sentence: str
-    design: Design
-    task: Task
 
 
 def limits_of(task: Task) -> Iterator[Limit]:

@@ -14,11 +14,10 @@ import numpy as np
 from synth.errors import in_a_line
 from synth.synthesis.all_targets import WholeTask, for_all_targets, verified_in_time
 from synth.synthesis.bound import why_impossible
-from synth.synthesis.message import Status, message, note_on_ways, why_no_better
 from synth.synthesis.present_shape import changing_little
 from synth.synthesis.proving import Certifier
 from synth.synthesis.search import ALTERNATIVES, Search
-from synth.synthesis.solution import Solution
+from synth.synthesis.solution import Solution, Status, message, note_on_ways, why_no_better
 from synth.synthesis.wanted import Design, best_of
 
 if TYPE_CHECKING:
@@ -30,8 +29,8 @@ if TYPE_CHECKING:
 
 _PROOF_TIME = 60.0  # s
 _PROVEN_IN_TIME = 50_000  # targets: whether each of more is within reach takes a second or longer
-# So many targets are looked at in the time of the search for a part of them; of all the time it is left some.
-_AS_LONG, _LEAST_SEARCH = 30_000, 0.2
+_AS_LONG = 30_000  # targets that are looked at in the time of the search for a part of them
+_LEAST_SEARCH = 0.2  # of all the time, which is left to the search however many there are
 
 
 @dataclass

@@ -18,11 +18,13 @@ if TYPE_CHECKING:
     from synth.synthesis import Solution
 
 # Millimetres on the page.
-_BANNER, _BODY = 21.0, 37.0
+_BANNER = 21.0  # where the word begins that nobody may miss
+_BODY = 37.0  # where the reasons begin
 _BANNER_SIZE = 12.0  # pt, at most
 _PITCH = 3.6
 _MOST_LINES = 3  # of one reason
-_MOST_REASONS, _MOST_RELEASES = 5, 5
+_MOST_REASONS = 5  # as on the terminal
+_MOST_RELEASES = 5
 
 
 def fill_missed(page: Page, solution: Solution) -> float:

@@ -37,7 +37,8 @@ _SMALL = 1e-5  # m and rad, of the differences
 _ARRIVED = 1e-5  # m and rad
 _LEVER = 0.15  # m; a rotation by 1 rad is as hard for a hand as a shift by this
 _NEARLY_SINGULAR = 0.02  # m/rad; P5 that a joint moves more slowly than this counts as held there
-_MOST_DESIGNS, _TOO_FAR = 2, 0.15  # m; a shape farther away is no aim of a correction
+_MOST_DESIGNS = 2  # beside the present pose, near which an aim is looked for
+_TOO_FAR = 0.15  # m; a shape farther away is no aim of a correction
 _FARTHEST = np.repeat([0.05, 0.2], 3)  # m and rad, in one step
 
 

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 REACH = 30e-3  # m, either way, unless told
-_STEPS, _ROUNDS = 12, 3
+_STEPS = 12  # of Gauss and Newton
+_ROUNDS = 3  # of these, with weights that grow with the misses
 _SMALL = 1e-5  # m, of the differences
 _ARRIVED = 1e-5  # m
 # A setting of 10 mm must save 0.1 mm of every miss: whatever does nothing stays as it is.

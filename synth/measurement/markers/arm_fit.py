@@ -21,10 +21,12 @@ if TYPE_CHECKING:
 _STEPS = 20
 _SMALL = 1e-6  # m and rad, of the differences
 _ARRIVED = 1e-7  # m and rad
-# How well a turn of joint 1 shows axis 1: where it passes the base, m, and its direction, rad.
-BASE_SHIFT, BASE_TILT = 0.15e-3, 0.3e-3
+# How well a turn of joint 1 shows axis 1.
+BASE_SHIFT = 0.15e-3  # m, where it passes the base
+BASE_TILT = 0.3e-3  # rad, its direction
 # A base of which only markers tell: so wide that they alone decide.
-_ANY_SHIFT, _ANY_TILT = 1.0, 1.0
+_ANY_SHIFT = 1.0  # m
+_ANY_TILT = 1.0  # rad
 # What is known of the roll of the link's end about axis 2 where no marker shows it: that somebody meant to
 # bend the link as was asked.
 _ROLL = 0.12  # rad

@@ -2,10 +2,9 @@
 
 The unknowns are where the circle of P5 is, how axis 2 points, the zero of joint 2 and the radius, seven
 numbers; axis 1 is the z axis of the frame. With the joint angles known each point is worth three numbers.
-With
-unknown ones it is worth one, its distance from the surface, and only the five invariants of the surface can
-be
-found: the zeros of the joints stay open. Gauss-Newton steps from several starts, derivatives by differences.
+With unknown ones it is worth one, its distance from the surface, and only the five invariants of the surface
+can be found: the zeros of the joints stay open. Gauss-Newton steps from several starts, derivatives by
+differences.
 """
 
 from __future__ import annotations
@@ -30,7 +29,8 @@ if TYPE_CHECKING:
 SURFACE_RMS = 0.3e-3  # m; a calibration that promises no better than this is refused, unless told
 UNKNOWNS = 7
 _SMALL = 1e-6  # m and rad, of the differences
-_STEPS, _ARRIVED = 40, 1e-7
+_STEPS = 40
+_ARRIVED = 1e-7  # m and rad
 _NO_BETTER = 1e-4  # of chi-square
 _STARTS = 4
 _START_SPREAD = np.array([8e-3] * 3 + [0.06] * 3 + [2e-3])  # m and rad
@@ -241,7 +241,7 @@ def _too_little_swept(
 ) -> str:
     """Return that a sweep does not determine the surface, and what to move more."""
     angles = joints_closest_to(arm, points)[:, 1] if joints is None else joints[:, 1]
-    seen, whole = float(np.ptp(angles)), arm.limits.second.upper - arm.limits.second.lower
+    seen, whole = np.ptp(angles), arm.limits.second.upper - arm.limits.second.lower
     would, asked = told_apart(rms, most_rms, digits=2)
     return (
         f"the sweep does not determine the surface: it would be off by {would} mm root mean square, and "

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from synth.robot import Arm, JointLimits
 
 FREEDOMS = 11  # of `StandingArm.displaced`
-AXIS_1, LINK_END = slice(0, 5), slice(5, 11)
+AXIS_1 = slice(0, 5)  # of the freedoms, those of axis 1
+LINK_END = slice(5, 11)  # and those of the link's end
 
 
 def cross(a: FloatArray, b: FloatArray) -> FloatArray:

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
 LENGTH_SLACK = 1e-6  # what rounding may do, m
 _TOGETHER = 2000  # joint angles whose clearances are looked at together
-# Of more joint angles than that the ranges that they lie in are looked at first: whole ranges of joint 2, so
-# many of them, in which the arm is clear of itself by a little, m.
-_RANGES, _CLEARLY = 500, 1e-3
+# Of more joint angles than that the ranges of joint 2 that they lie in are looked at first.
+_RANGES = 500
+_CLEARLY = 1e-3  # m; in a range in which the arm is clear of itself by this nothing else is looked at
 
 
 def chosen_joints(

@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 PIECES = 16  # of the tube
-COLUMN, ROD = 0, -1  # the base's column P1P2 and the rigid link, beside the pieces 1 to 16
+COLUMN = 0  # the base's column P1P2, beside the pieces 1 to 16
+ROD = -1  # the rigid link
 ANY_TARGET = -1
 
 _GOLDEN_STEPS = 44

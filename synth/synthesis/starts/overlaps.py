@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from synth.synthesis.starts.shapes import Shapes
     from synth.task import Task
 
-# The least distance along a rod is looked for at so many samples, which are drawn closer so often.
-_ROD_SAMPLES, _ROD_ZOOMS = 8, 3
+_ROD_SAMPLES = 8  # along a rod, where its least distance is looked for
+_ROD_ZOOMS = 3  # times that they are drawn closer
 
 
 def overlaps(

@@ -37,8 +37,8 @@ _GRID = (91, 64)
 _SAMPLES = 24
 _MARGINS = (0.02, 0.008, 0.003)
 _STEP = 0.02  # rad, between postures that are looked at when a way is straightened
-# What a missing way, and a posture with no margin of a joint, are worth in travel, rad: more than any ways.
-_NO_WAY, _CRAMPED = 1e6, 1e3
+_NO_WAY = 1e6  # rad of travel that a missing way is worth: more than any ways
+_CRAMPED = 1e3  # rad, likewise a posture with no margin of a joint: less than a way
 
 
 def motions(task: Task, design: Design) -> tuple[Motion, ...]:
