@@ -9,18 +9,13 @@ from typing import Annotated, Any
 
 from pydantic import (
     BeforeValidator,
-    Discriminator,
     Field,
-    Tag,
     model_validator,
 )
 
 from synth.task.entry_types import (
-    MAPPING,
-    TEXT,
     Angle,
     Coordinate,
-    LengthUnit,
     Name,
     Position,
     Positive,
@@ -29,7 +24,7 @@ from synth.task.entry_types import (
     without_case,
 )
 from synth.task.model import Objective, Topology
-from synth.task.robot_schema import RobotEntry  # noqa: TC001 - pydantic reads the annotation
+from synth.task.robot_schema import FileOfARobot
 
 
 class BaseEntry(Strict):
@@ -140,16 +135,10 @@ class SurfaceEntry(Strict):
     )
 
 
-class TaskFile(Strict):
+class TaskFile(FileOfARobot):
     """A task file."""
 
-    synth: Annotated[int, Field(ge=1, le=1)] = Field(description="version of this format: 1")
     name: Name = Field(default_factory=absent, description="what the task is called")
-    length_unit: LengthUnit = Field(description="unit of all lengths in this file: mm, cm or m")
-    robot: Annotated[
-        Annotated[str, Tag(TEXT)] | Annotated[RobotEntry, Tag(MAPPING)],
-        Discriminator(lambda value: {str: TEXT, dict: MAPPING}.get(type(value))),
-    ] = Field(description="a preset's name, the path of a robot file, or a mapping")
     base: BaseEntry = Field(default_factory=BaseEntry, description="where the robot stands in the task frame")
     floor: Coordinate | None = Field(default=0.0, description="height in the base frame; null: no floor")
     topology: Annotated[Topology, Field(strict=False), BeforeValidator(without_case)] = Field(
