@@ -15,6 +15,7 @@ from synth.guide.loop.outlook import outlook
 from synth.guide.loop.settings import best_settings, with_settings
 from synth.guide.loop.trying_on import value_of_trying
 from synth.measurement import StandingArm, fit_arm, joints_closest_to, joints_following
+from synth.rounding import rounded_up
 from synth.synthesis import Design, solve, verify
 
 HAND = Hand()
@@ -69,6 +70,21 @@ def test_four_points_never_lock_and_ask_for_better_markers(scene):
     text = check_text(check)
     for asked in ("P5 must be seen", "A2:150", "--base-calibrated"):
         assert asked in text
+
+
+def test_where_joint_2_has_no_zero_a_marker_is_asked_for_and_no_move(scene):
+    """No move of the link helps much there: so it was told, and what it brings is told still."""
+    task, designs, wanted = scene
+    measured = fit(scene, wanted.moved(OFF), "P1 P2 P3 P4 A2:-150 A2:150")
+    check = check_arm(task, designs, measured)
+    after, now = check.correction.outlook.expected_worst, check.stiffened.expected_worst
+    assert after > 0.7 * now
+    first = check_text(check).splitlines()[2]
+    assert first.startswith("• the zero of joint 2 is not shown: P5 must be seen")
+    assert (
+        f"even after the best correction a practised hand has a largest miss of {rounded_up(after)}" in first
+    )
+    assert "move the link's end" not in check_text(check)
 
 
 def test_without_corrections_left_nothing_is_asked(scene):

@@ -106,7 +106,7 @@ class Session:
             return otherwise
 
     def tell_of(self, what: str, error: BaseException) -> None:
-        """Say in a sentence what broke; with its traceback for who asked for that."""
+        """Say in a sentence what broke; with its traceback if that was asked for."""
         self.broken = True
         if os.environ.get(DEBUG):
             say("".join(traceback.format_exception(error)), on_stderr=True)

@@ -100,7 +100,7 @@ def write_all(
     Args:
         files: Contents by name.
         directory: Where to; it is made if it is not there.
-        without: Names of files that shall not be there any more.
+        without: Names of files that must not be there any more.
 
     Returns:
         The paths of the files, in the order given.

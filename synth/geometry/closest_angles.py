@@ -135,7 +135,7 @@ def _roots(
     """Return where the distances of points stop falling, within brackets that nothing leads out of."""
     if not len(lower):
         return upper
-    # 0.7 s to import, which only who uses it shall pay; scipy has no types of its own.
+    # 0.7 s to import, paid only when it is used; scipy has no types of its own.
     from scipy.optimize.elementwise import find_root  # type: ignore[import-untyped]  # noqa: PLC0415
 
     found = find_root(lambda *at: section.miss(*at)[1], (lower, upper), args=(rho, z))

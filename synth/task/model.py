@@ -64,7 +64,7 @@ class Task:
     Attributes:
         name: What the task is called.
         robot: The hardware.
-        targets: What shall be reached.
+        targets: What is to be reached.
         base: Where the robot stands.
         floor: Height in the base frame, m, that link, joint and end effector stay above; None
             where there is no floor.

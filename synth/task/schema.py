@@ -125,7 +125,7 @@ class CurrentEntry(Strict):
 
 
 class SurfaceEntry(Strict):
-    """A surface that the workspace shall pass through."""
+    """A surface that the workspace must pass through."""
 
     points: Annotated[str, Field(min_length=1)] = Field(
         default_factory=absent, description="path of a CSV file of points x,y,z in the task frame"
@@ -151,7 +151,7 @@ class TaskFile(FileOfARobot):
     surface: SurfaceEntry = Field(default_factory=absent, description="a surface, given by points of it")
     obstacles: list[ObstacleEntry] = Field(default=[], description="solids to keep clear of")
     current: CurrentEntry = Field(
-        default_factory=absent, description="the present shape of the link, which shall change little"
+        default_factory=absent, description="the present shape of the link, which is to change little"
     )
 
 

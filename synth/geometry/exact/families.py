@@ -154,7 +154,7 @@ def spheres_through(
 
     Args:
         targets: Any number of them, shape (n, 3), m; of two heights at least, unless the centre is given.
-        centre: Height z0 where the axes shall meet (0: spherical, d12: PUMA-like), m; or any.
+        centre: Height z0 where the axes are to meet (0: spherical, d12: PUMA-like), m; or any.
         tolerance: Largest distance of a target from the sphere, m.
 
     Raises:

@@ -152,7 +152,7 @@ def _starts(gram: FloatArray) -> list[FloatArray]:
 
 def _polished(measured: MeasuredDistances, start: FloatArray, stiffnesses: tuple[float, ...]) -> FloatArray:
     """Return the points of the local minimum near a start, shape (n, 3), m."""
-    # 1 s to import, which only who uses it shall pay; scipy has no types of its own.
+    # 1 s to import, paid only when it is used; scipy has no types of its own.
     from scipy.optimize import least_squares  # type: ignore[import-untyped]  # noqa: PLC0415
 
     points = start

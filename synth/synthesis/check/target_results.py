@@ -30,7 +30,7 @@ class TargetResult:
         reached: Where the end effector gets to, shape (3,).
         miss: Distance between the two, m; infinite where there is no shape.
         within_tolerance: Whether the target is reached.
-        clearance: How far the arm at least keeps from the obstacles there, m; told up to 0.1 m, and
+        clearance: How far the arm at least keeps from the obstacles there, m; at most 0.1 m is reported, and
             infinite without obstacles.
         joints: Joint angles (theta1, theta2), rad.
         alternatives: Other joint angles that reach it within its tolerance, shape (k, 2), rad, as clear of

@@ -68,7 +68,7 @@ def verify(task: Task, arm: Arm, joints: FloatArray | None = None, *, keep: bool
         arm: The robot in the shape.
         joints: Joint angles to consider beside the closest ones and the branches of the inverse
             kinematics, shape (n, 2), rad: at the closest point the arm may be in the way of something.
-        keep: Whether the arm shall stand at these angles wherever they reach the target within its
+        keep: Whether the arm is to stand at these angles wherever they reach the target within its
             tolerance, and clear of everything, though others come nearer.
 
     Returns:

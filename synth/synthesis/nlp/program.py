@@ -1,4 +1,4 @@
-"""The program itself: what is unknown, what shall be least, and how a start is polished.
+"""The program itself: what is unknown, what is to be least, and how a start is polished.
 
 "Gamma passes through the targets" is not written as Gamma = 0. In three of the four categories Gamma
 is a perfect square, so it vanishes together with its gradient and no constraint qualification holds.

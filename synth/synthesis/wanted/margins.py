@@ -38,7 +38,7 @@ class Margins:
         length: Of the link's length from its limits, m; infinite if it is fixed.
         bend_radius: Of the smallest bend radius above its limit, m.
         total_bend: Of the total bend below its limit, rad.
-        clearance: Of the arm from obstacles at the targets, m; told up to 0.1 m.
+        clearance: Of the arm from obstacles at the targets, m; at most 0.1 m is reported.
     """
 
     joint1: float

@@ -60,7 +60,7 @@ _LENGTHS = 0.05  # m for a bend of that size, by which lengths change
 _PATIENCE = 3  # rounds that gain next to nothing, after which there is no other
 _COUNTS = 4  # first columns of `preferences`, in which that is asked
 _BESIDE = 0.7  # of the tolerances, by which bent shapes are led beside the targets: else these were of no use
-_TIGHT = 1e-3  # m; targets of smaller tolerances are met exactly, for there is nothing to be had of those
+_TIGHT = 1e-3  # m; targets of smaller tolerances are met exactly: nothing is gained by using those up
 _EXACTLY = 0.02  # of its tolerance a miss may take where targets are met exactly
 
 
@@ -115,7 +115,7 @@ def _searched(
 
 
 def _is_tight(task: Task) -> bool:
-    """Whether there is nothing to be had of the tolerances, so that targets are met exactly."""
+    """Whether nothing is gained by using up the tolerances, so that targets are met exactly."""
     return float(task.tolerances.min()) < _TIGHT
 
 
