@@ -1,6 +1,7 @@
 """The plan of the rooms: imports run downwards and through doors, nothing goes round in circles."""
 
 import ast
+import re
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -210,6 +211,14 @@ def test_what_a_class_binds_anew_is_seen():
     (node,) = classes(f"class A:\n{methods}        self.b += 1\n        self.c, other.d = self.a, 2\n")
     assert rebound(node) == {"b", "c"}
     assert node.end_lineno - node.lineno + 1 == 6
+
+
+def test_the_files_that_the_docs_send_a_reader_to_are_there():
+    page = (TESTS.parent / "docs" / "how-it-works.md").read_text()
+    table = page.split("## Where to change what")[1].split("\n## ")[0]
+    named = re.findall(r"`([\w/]+\.py)`", table)
+    assert len(named) > 15
+    assert set(named) <= set(FILES)
 
 
 @pytest.mark.parametrize("library", LIBRARIES)
