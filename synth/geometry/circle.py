@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, Self
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.errors import GeometryError
 from synth.geometry.closest_angles import closest_angles
 from synth.geometry.distances import ArmDistances, realise, squared_distances
@@ -17,8 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class CircleAboutAxis:
     """A circle in space, about an axis of its own.
 
@@ -76,8 +74,7 @@ class CircleAboutAxis:
         return np.asarray(self.centre + self.radius * across)
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class SweptCircle(CircleAboutAxis):
     """Axis 2 and the circle of P5 about it, in the base frame (axis 1 is z, P1 the origin).
 

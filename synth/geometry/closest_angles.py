@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.geometry.trigonometric import critical_angles, root_angles, sampling_angles
 
 if TYPE_CHECKING:
@@ -49,8 +48,7 @@ def closest_angles(
     return np.concatenate([_closest_in_block(section, *part) for part in parts])
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class _Section:
     """The curve (rho(t), z(t)) of P5(t) = c + cos(t) s + sin(t) q, with s and q of length R.
 

@@ -8,18 +8,16 @@ and offset max over the solid of n . x leave the whole solid on one side.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, frozen_value
 from synth.checks import Checks
 
 _UP = np.array([0.0, 0.0, 1.0])
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Sphere:
     """A ball.
 
@@ -61,8 +59,7 @@ class Sphere:
         return Sphere((self.centre - position) @ _about_z(yaw), self.radius)
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Capsule:
     """All points within a radius of a segment.
 
@@ -112,8 +109,7 @@ class Capsule:
         return np.asarray(across / np.linalg.norm(across))
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Box:
     """A box with vertical edges.
 

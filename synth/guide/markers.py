@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.checks import refuse_unless
 from synth.guide.posture import HoldPosture, hold_posture
 from synth.guide.sensitivity import ShapeTolerance, shape_tolerance
@@ -29,8 +28,7 @@ _VERTICAL = 1e-9  # of a direction's horizontal part: no heading below
 _LEAST_GAP = 0.010  # m; a point nearer to the link's end than this would only be mistaken for it
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Placement:
     """Where everything stands while joint 1 is held at one angle. Task frame, m.
 
@@ -65,8 +63,7 @@ class Placement:
             object.__setattr__(self, name, frozen(getattr(self, name)))
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Guide:
     """What a person needs to bend the link into its shape, and to tell whether it is right.
 

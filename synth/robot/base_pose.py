@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, frozen_value
 from synth.checks import Checks
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class BasePose:
     """The pose of the robot's base frame in the task frame.
 

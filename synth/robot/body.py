@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, frozen_value
 
 if TYPE_CHECKING:
     from synth.robot.arm import Arm
@@ -19,8 +18,7 @@ _TOLERANCE = 2e-5
 ROUNDING = 2e-6  # m
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class ArmBody:
     """The room that an arm takes up, in its base frame.
 

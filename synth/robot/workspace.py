@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.geometry import critical_angles, sampling_angles
 from synth.robot.hardware import Interval, JointLimits, into_turn
 
@@ -26,8 +25,7 @@ _GAUSS = np.polynomial.legendre.leggauss(16)
 _COARSEST = 1.0  # rad; seven cells a turn still close up
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class SurfaceMesh:
     """Triangles on a workspace surface.
 
@@ -56,8 +54,7 @@ class SurfaceMesh:
         return np.asarray(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=-1))
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Workspace:
     """The surface that P5 sweeps within joint limits. Points are in the task frame, in metres.
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, frozen_value
 from synth.checks import LONGEST_NAME, SMALLEST, Checks, described, wrong_name
 from synth.names import given_twice
 
@@ -20,8 +19,7 @@ if TYPE_CHECKING:
 DEFAULT_TOLERANCE = 1e-3  # m: twice the error of the motion capture that measured the prototype
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class PointTarget:
     """A point that the end effector must reach: one kind of target.
 
@@ -52,8 +50,7 @@ class _CheckedNames(tuple[str, ...]):
     __slots__ = ()
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class TargetTable(Sequence[PointTarget]):
     """Targets in columns: as a sequence it is one of `PointTarget`, made when asked for.
 

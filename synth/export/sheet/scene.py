@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.export.sheet.obstacle_outlines import ends_of
 from synth.robot import BasePose
 
@@ -29,8 +29,7 @@ _FAR = 250.0  # mm; obstacles that begin farther off are not drawn
 _NEAR_SIDE = 60.0  # mm, of those that do not: so much is shown
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Scene:
     """What all views show, in the task frame and in mm.
 

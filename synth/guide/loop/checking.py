@@ -5,12 +5,11 @@ Readings -> ArmFit -> Outlook -> Verdict, and the one correction that is worth m
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.guide.loop.aim import best_aims, size, towards
 from synth.guide.loop.hand import Hand
 from synth.guide.loop.outlook import Outlook, after_stiffening, outlook
@@ -41,8 +40,7 @@ class Verdict(SentenceEnum):
     UNUSABLE = "unusable", "the measurement does not show where the arm stands"
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Correction:
     """A displacement of the link's end, as a person carries it out.
 
@@ -70,8 +68,7 @@ class Correction:
             object.__setattr__(self, name, frozen(getattr(self, name)))
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Check:
     """What is to be said of a link as it stands.
 

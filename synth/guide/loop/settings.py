@@ -7,12 +7,12 @@ sought by damped Gauss-Newton steps so that the targets' misses, joints at their
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.guide.loop.outlook import Outlook, outlook
 from synth.measurement import joints_following
 
@@ -30,8 +30,7 @@ _ARRIVED = 1e-5  # m
 _EFFORT = 0.01
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Settings:
     """What to set.
 

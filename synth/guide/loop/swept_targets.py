@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.guide.loop.outlook import Outlook
 from synth.measurement import joints_closest_to, joints_following
 
@@ -19,8 +18,7 @@ if TYPE_CHECKING:
 _SAMPLES = 1000
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class SweptTarget:
     """What becomes of a target on the calibrated arm.
 

@@ -6,12 +6,12 @@ wanted, its end turned onto the markers seen; derivatives are central difference
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.measurement.markers.markers import Place
 from synth.measurement.markers.standing_arm import FREEDOMS, StandingArm
 
@@ -34,8 +34,7 @@ _ANYWHERE = 10.0  # m and rad
 _NOT_SHOWN = 0.05  # a freedom left as uncertain as this, m or rad, was not measured
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class ArmFit:
     """The arm that fits the markers best, and how sure that is.
 

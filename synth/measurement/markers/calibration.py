@@ -9,12 +9,12 @@ differences.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.geometry import Invariants, SweptCircle
 from synth.measurement.markers.standing_arm import rotation_matrix
 from synth.measurement.markers.standing_joints import joints_closest_to, joints_following
@@ -43,8 +43,7 @@ _SECONDS = 181  # angles of joint 2 at which the surface is looked at
 _FEWEST = 8
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Calibration:
     """The arm that fits a sweep best.
 

@@ -7,13 +7,12 @@ decides.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.measurement.markers.arm_fit import ArmFit, fit_arm, marker_positions
 from synth.measurement.markers.frames import PLAUSIBLE, frame_nearer, frame_that_fits, wrong_base
 from synth.measurement.markers.markers import Place, Readings
@@ -34,8 +33,7 @@ _FACTORS = {"1000 times too large": 1e3, "1000 times too small": 1e-3, "10 times
 _SHORTEST = 0.02  # m; distances below tell nothing of a unit
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Examination:
     """What is to be believed of readings.
 

@@ -6,12 +6,12 @@ where the axes are, in the frame of the measurement, with joint 1 at the angle t
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.robot import turned
 
 if TYPE_CHECKING:
@@ -41,8 +41,7 @@ def rotation_matrix(vector: FloatArray) -> FloatArray:
     return np.asarray(np.eye(3) + sine[..., None, None] * cross + versine[..., None, None] * (cross @ cross))
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class StandingArm:
     """Arms as they stand, in the frame of the measurement, m; leading axes "..." may be absent.
 

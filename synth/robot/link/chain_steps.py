@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol, Self
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -48,8 +47,7 @@ class Aim(Protocol):
         ...
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Wish:
     """What is wanted of the chains at their aim: to be bent little or, with a present one, to change little.
 

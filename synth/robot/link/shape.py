@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, frozen_value
 from synth.checks import Checks
 from synth.rounding import rounded_down
 
@@ -89,8 +88,7 @@ def _along(curvatures: ArrayLike, lengths: ArrayLike) -> Iterator[tuple[FloatArr
         yield rotation, position
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class LinkShape:
     """One shape of the malleable link; it starts at P2 along +z of the base frame.
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, frozen_value
 from synth.robot import Interval, LinkReach
 
 if TYPE_CHECKING:
@@ -27,8 +27,7 @@ _SMALL_TURN = 0.15  # rad
 _DIRECTIONS = 3  # tried as that of the straight part of the link
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class ReachTable:
     """Upper bounds of the margin of a link's reach, from its values on a grid of the half-plane.
 
@@ -68,8 +67,7 @@ class ReachTable:
         return np.asarray(self.margins[i, j] + moved)
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Limits:
     """What a task and its robot rule out, box by box."""
 

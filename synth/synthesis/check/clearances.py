@@ -6,12 +6,11 @@ It is a part of the independent check: plain numpy, through no expression of the
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.robot import Arm, ArmBody, clear_of_obstacles, clear_of_tube, tube_clear_of_itself
 
 if TYPE_CHECKING:
@@ -88,8 +87,7 @@ def _rod_from_tube(body: ArmBody, theta2: FloatArray) -> FloatArray:
     return bounds
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Clearances:
     """What the arm keeps clear of, as lower bounds of distances, m; see `ArmBody`.
 

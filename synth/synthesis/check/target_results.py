@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.synthesis.check.clearances import clear_of_everything
 
 if TYPE_CHECKING:
@@ -18,8 +17,7 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class TargetResult:
     """What becomes of one target. Positions in the task frame, m.
 

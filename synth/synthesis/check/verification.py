@@ -6,11 +6,10 @@ Only this module may say that a target is reached or that a shape respects the l
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.checks import refuse_unless
 from synth.robot import Arm
 from synth.synthesis.check.clearances import chosen_joints
@@ -18,8 +17,7 @@ from synth.synthesis.check.violations import Violation, violations
 from synth.task import Task
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Verification:
     """What a shape really does for a task.
 

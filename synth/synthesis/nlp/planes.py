@@ -13,12 +13,11 @@ nearest point at the shape that the solver starts from; new ones are taken where
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.robot import ArmBody, turned
 
 if TYPE_CHECKING:
@@ -42,8 +41,7 @@ _NEAR = 0.06
 _NEAR_ITSELF = 0.03
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Separation:
     """A plane between a piece of the arm and an obstacle, or another piece.
 

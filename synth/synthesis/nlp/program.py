@@ -27,14 +27,13 @@ energy, which chooses the gentlest among the shapes that miss alike. Overlaps co
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, frozen_value
 from synth.synthesis.nlp.arm import SymbolicArm
 from synth.synthesis.nlp.blocks import Constraints, Unknowns
 from synth.synthesis.nlp.ipopt import Ipopt
@@ -62,8 +61,7 @@ _OVERLAP_UNIT = 1e-3
 _FINEST_UNIT = 1.0
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class NlpAnswer:
     """Where the solver stopped. A claim only: the verification decides what it is worth.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.synthesis.solution.message import Status
 
 if TYPE_CHECKING:
@@ -36,8 +36,7 @@ class Release:
     task: Task
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Outcome:
     """What a synthesis found, and how it ended.
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.errors import SynthError
 from synth.rounding import counted
 from synth.synthesis.check import TargetResult, target_results
@@ -31,8 +31,7 @@ class NotFoundError(SynthError):
         self.solution = solution
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Solution(Outcome):
     """The result of a synthesis: always returned, whatever was found; see `Outcome` for what it holds."""
 

@@ -8,13 +8,13 @@ long, and their components are needed one by one.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, frozen_value
 from synth.robot import into_turn
 
 if TYPE_CHECKING:
@@ -30,8 +30,7 @@ _TINY = 1e-12
 _NEAR_AXIS = 0.02
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class TargetsSeen:
     """Targets as joint 1 sees them, and the limits of the joints.
 
@@ -54,8 +53,7 @@ class TargetsSeen:
         return np.arctan2(self.positions[:, 1], self.positions[:, 0])
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Postures:
     """P5 of N shapes beside n targets each.
 

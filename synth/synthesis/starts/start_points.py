@@ -7,12 +7,11 @@ finds it nearly always, and looking at a shape is ten thousand times cheaper tha
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.synthesis.starts.exact_arms import exact_arms, nearest_to_exact_arms
 from synth.synthesis.starts.refined import relative_weights
 from synth.synthesis.starts.screening import screened, shapes_at_random
@@ -52,8 +51,7 @@ _SETTLED_PART = 0.02  # of the tightest tolerance
 _MOST_STARTS = {Objective.LEAST_SQUARES: 12, Objective.MINIMAX: 24}
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Start:
     """A shape to polish.
 

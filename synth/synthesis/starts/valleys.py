@@ -14,12 +14,12 @@ better one that is so narrow that all of them missed it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.synthesis.starts.overlaps import overlaps
 from synth.synthesis.starts.refined import Refined
 from synth.synthesis.starts.refinement import cleared, level, refine
@@ -62,9 +62,7 @@ _OF_A_KIND = 4
 _LEVELLED = 48  # valleys whose least worst miss is looked for
 
 
-@compared_by_value
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Valleys:
     """What is known of the valleys of a task.
 
