@@ -1,9 +1,9 @@
 """The array type of the project, read-only copies for frozen values, and how such values compare."""
 
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import dataclass, field, fields
 from math import isnan
-from typing import Any, TypeVar
+from typing import Any, TypeVar, dataclass_transform
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +20,12 @@ def frozen(values: ArrayLike) -> FloatArray:
     return array
 
 
+@dataclass_transform(frozen_default=True, eq_default=False, field_specifiers=(field,))
+def frozen_value(cls: type[_T]) -> type[_T]:
+    """Make a class that may hold arrays a frozen dataclass that is compared by value."""
+    return compared_by_value(dataclass(frozen=True, eq=False)(cls))
+
+
 def compared_by_value(cls: type[_T]) -> type[_T]:
     """Give a frozen dataclass that holds arrays, declared with `eq=False`, equality and a hash by value.
 
@@ -31,13 +37,13 @@ def compared_by_value(cls: type[_T]) -> type[_T]:
         if other.__class__ is not self.__class__:
             return NotImplemented
         return self is other or all(
-            _equal(getattr(self, field.name), getattr(other, field.name))
-            for field in fields(self)  # type: ignore[arg-type]  # a dataclass
-            if field.compare
+            _equal(getattr(self, each.name), getattr(other, each.name))
+            for each in fields(self)  # type: ignore[arg-type]  # a dataclass
+            if each.compare
         )
 
     def hashed(self: object) -> int:
-        names = [field.name for field in fields(self) if field.compare]  # type: ignore[arg-type]
+        names = [each.name for each in fields(self) if each.compare]  # type: ignore[arg-type]
         return hash((cls, *(_key(getattr(self, name)) for name in names)))
 
     cls.__eq__ = equal  # type: ignore[method-assign]

@@ -90,6 +90,11 @@ def _rounded(value: float, unit: Unit, digits: int, rounding: str) -> str:
     return f"{number:f}" if number else f"{abs(number):f}"  # no "-0.0"
 
 
+def counted(count: int, what: str) -> str:
+    """Return a number of things, such as "1 start" and "2 starts"."""
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
+
+
 def written_apart(first: float, second: float) -> tuple[str, str]:
     """Write two different numbers with as few digits as show that they differ, six at least."""
     for digits in range(6, 17):

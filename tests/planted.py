@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import least_squares
 
-from synth.robot import PRESETS, Arm, ArmBody, LinkShape, Robot
+from synth.robot import PRESETS, Arm, ArmBody, LinkShape, Robot, clear_of_tube
 from synth.task import PointTarget, TargetTable, Task, Topology
 
 ROBOT = PRESETS["malleable-2dof"]
@@ -61,7 +61,7 @@ def reached_points(arm: Arm, count: int, rng: np.random.Generator) -> np.ndarray
     theta1 = rng.uniform(limits.base.lower, limits.base.upper, 50 * count)
     theta2 = rng.uniform(limits.second.lower, limits.second.upper, 50 * count)
     points = arm.forward_kinematics(theta1, theta2)
-    return points[(points[:, 2] >= 0.0) & (ArmBody(arm).rod_from_tube(theta2) > 0.0)][:count]
+    return points[(points[:, 2] >= 0.0) & (clear_of_tube(ArmBody(arm), theta2) > 0.0)][:count]
 
 
 def planted_task(seed: int, count: int | None = None, topology: Topology = Topology.ANY) -> tuple[Task, Arm]:
@@ -93,7 +93,7 @@ def scanned(
     rng, limits = np.random.default_rng(seed), task.robot.joint_limits
     theta1 = rng.uniform(limits.base.lower + 0.05, limits.base.upper - 0.05, 2 * count)
     theta2 = rng.uniform(limits.second.lower + 0.05, limits.second.upper - 0.05, 2 * count)
-    theta2 = theta2[ArmBody(arm).rod_from_tube(theta2) > 0.0]
+    theta2 = theta2[clear_of_tube(ArmBody(arm), theta2) > 0.0]
     points = arm.forward_kinematics(theta1[: len(theta2)], theta2)[:count]
     points += rng.normal(0.0, noise, points.shape)
     table = TargetTable(

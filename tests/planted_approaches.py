@@ -29,7 +29,9 @@ def planted_approach(seed: int, count: int = 1, tolerance: float = np.radians(1.
             across /= np.linalg.norm(across)
             off = rng.uniform(0.0, 0.9 * tolerance)
             direction = np.cos(off) * pointing + np.sin(off) * across
-            target = PointTarget(f"target {len(targets) + 1}", points[index], 0.5e-3, 1.0, Approach(direction, tolerance))
+            target = PointTarget(
+                f"target {len(targets) + 1}", points[index], 0.5e-3, 1.0, Approach(direction, tolerance)
+            )
             targets.append(target)
         return Task(f"planted approach {seed}", ROBOT, targets)
 

@@ -9,7 +9,7 @@ import numpy as np
 from planted import ROBOT, feasible, planted_arm
 
 from synth.geometry import Sphere
-from synth.robot import Arm, ArmBody, Interval, LinkShape
+from synth.robot import Arm, ArmBody, Interval, LinkShape, clear_of_tube
 from synth.task import Obstacle, PointTarget, Task
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def _joints(rng: np.random.Generator, arm: Arm, count: int) -> np.ndarray:
     joints = np.column_stack(
         [rng.uniform(i.lower, i.upper, 60 * count) for i in (limits.base, limits.second)]
     )
-    free = (arm.forward_kinematics(*joints.T)[:, 2] > 0.03) & (ArmBody(arm).rod_from_tube(joints[:, 1]) > 0)
+    free = (arm.forward_kinematics(*joints.T)[:, 2] > 0.03) & (clear_of_tube(ArmBody(arm), joints[:, 1]) > 0)
     return joints[free][:count]
 
 

@@ -19,9 +19,9 @@ import synth
 from synth.errors import Mistake
 from synth.export import write_files
 from synth.geometry import Box, Capsule, Sphere, planes_through, spheres_through
+from synth.geometry.circle import CircleAboutAxis
 from synth.guide import make_guide
 from synth.guide.loop.checking import check_arm
-from synth.guide.loop.forgiving import most_forgiving
 from synth.guide.loop.settings import best_settings
 from synth.guide.loop.swept_targets import swept_targets
 from synth.measurement import StandingArm, examine, inspect
@@ -32,6 +32,7 @@ from synth.robot import Arm, LinkShape, Workspace, link_to_pose, why_no_link
 from synth.synthesis import Release, solve, verify
 from synth.synthesis.bound import prove
 from synth.synthesis.relaxed_limits import limits_of
+from synth.synthesis.solution import Outcome
 from synth.watch import Watch
 
 # These hold symbolic expressions, and a figure: of neither can anybody say whether it is equal to another.
@@ -89,7 +90,7 @@ def _solved(folder):
     solution = solve(task)
     (make_guide(task, solution.best), solution.targets)
     write_files(solution, folder)
-    most_forgiving(task, solution.designs[:1])
+    Outcome(*(getattr(solution, field.name) for field in dataclasses.fields(Outcome)))
     limit = next(iter(limits_of(task)))
     Release(limit.name, 0.1, 0.1, limit.sentence(0.1), solution.best, limit.relaxed(0.1))
 
@@ -141,5 +142,6 @@ def _small():
     rotation, position = arm.shape.end_frame()
     link_to_pose(ROBOT.link, position, rotation[:, 0], current=arm.shape)
     why_no_link(ROBOT.link, position, rotation[:, 0])
+    CircleAboutAxis.from_points(arm.circle.axis_points(0.1, 0.2).repeat(2, axis=0)[1:])
     arm.circle.distance([[0.3, 0.2, 0.1]])
     (Sphere([0, 0, 1], 1), Capsule([[0, 0, 0], [1, 1, 1]], 1), Box([0, 0, 0], [1, 1, 1]), Mistake("wrong"))

@@ -187,9 +187,9 @@ def test_shapes_and_targets_move_with_the_base_as_differences_say():
         moved = [shapes.unknowns.copy() for _ in range(2)]
         for sign, unknowns in zip((step, -step), moved, strict=True):
             unknowns[:, number - 6] += sign
-        seen = [replace(shapes, unknowns=unknowns).seen(point)[:, 0] for unknowns in moved]
+        seen = [replace(shapes, unknowns=unknowns).bases.seen(point)[:, 0] for unknowns in moved]
         shift, turn = rows[:, :3, number], rows[:, 3:, number]
-        expected = -shift - np.cross(turn, shapes.seen(point)[:, 0])
+        expected = -shift - np.cross(turn, shapes.bases.seen(point)[:, 0])
         assert (seen[0] - seen[1]) / (2.0 * step) == pytest.approx(expected, abs=1e-7)
 
 
@@ -203,4 +203,4 @@ def test_the_step_leads_to_the_targets_from_nearby():
     unknowns[:, -3:] = np.array([start.arm.base.roll, start.arm.base.pitch, start.arm.base.yaw]) + 0.01
     refined = refine(task, replace(shapes, unknowns=unknowns), iterations=8, near=True)
     assert refined.cost[0] < 1e-12
-    assert base.position == pytest.approx(task.places.pose(refined.shapes.base[0]).position, abs=0.1)
+    assert base.position == pytest.approx(task.places.pose(refined.shapes.bases.rows[0]).position, abs=0.1)

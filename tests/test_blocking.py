@@ -10,9 +10,9 @@ from planted import noisy
 from planted_blocked import blocked_task
 
 from synth.export import solution_to_json
-from synth.guide import help_told, solution_text
+from synth.guide import solution_text
 from synth.robot import PRESETS
-from synth.synthesis import blocking, explain, solve, verify
+from synth.synthesis import blocking, explain, help_told, solve, verify
 from synth.synthesis.solve import follow
 from synth.task import PointTarget, Task, load_task
 from synth.watch import Watch

@@ -10,12 +10,12 @@ from standing import BARS, HOLD, SIGMA, seen
 from synth.guide.loop.aim import aimed, best_aims, towards
 from synth.guide.loop.check_text import check_text, way_words
 from synth.guide.loop.checking import Verdict, best_joints, check_arm
-from synth.guide.loop.forgiving import loss_at_floor, most_forgiving
 from synth.guide.loop.hand import Hand, errors
 from synth.guide.loop.outlook import outlook
 from synth.guide.loop.settings import best_settings, with_settings
 from synth.guide.loop.trying_on import value_of_trying
-from synth.measurement import StandingArm, fit_arm
+from synth.measurement import StandingArm, fit_arm, joints_closest_to, joints_following
+from synth.rounding import rounded_up
 from synth.synthesis import Design, solve, verify
 
 HAND = Hand()
@@ -57,8 +57,8 @@ def test_a_link_off_its_place_is_corrected(scene):
     check = check_arm(task, designs, fit(scene, true, rng=np.random.default_rng(0)))
     assert check.verdict is Verdict.CORRECT
     after = true.moved(np.concatenate([check.correction.move, check.correction.rotate]))
-    before = misses(true, true.closest(task.positions_in_base), task).max()
-    assert misses(after, after.closest(task.positions_in_base), task).max() < 0.35 * before
+    before = misses(true, joints_closest_to(true, task.positions_in_base), task).max()
+    assert misses(after, joints_closest_to(after, task.positions_in_base), task).max() < 0.35 * before
     assert check.correction.shape is not None
     assert "move the link's end" in check_text(check)
 
@@ -70,6 +70,21 @@ def test_four_points_never_lock_and_ask_for_better_markers(scene):
     text = check_text(check)
     for asked in ("P5 must be seen", "A2:150", "--base-calibrated"):
         assert asked in text
+
+
+def test_where_joint_2_has_no_zero_a_marker_is_asked_for_and_no_move(scene):
+    """No move of the link helps much there: so it was told, and what it brings is told still."""
+    task, designs, wanted = scene
+    measured = fit(scene, wanted.moved(OFF), "P1 P2 P3 P4 A2:-150 A2:150")
+    check = check_arm(task, designs, measured)
+    after, now = check.correction.outlook.expected_worst, check.stiffened.expected_worst
+    assert after > 0.7 * now
+    first = check_text(check).splitlines()[2]
+    assert first.startswith("• the zero of joint 2 is not shown: P5 must be seen")
+    assert (
+        f"even after the best correction a practised hand has a largest miss of {rounded_up(after)}" in first
+    )
+    assert "move the link's end" not in check_text(check)
 
 
 def test_without_corrections_left_nothing_is_asked(scene):
@@ -108,7 +123,7 @@ def test_an_aim_meets_the_task_and_is_nearer_than_the_design(scene):
     task, designs, wanted = scene
     arm = wanted.moved(OFF)
     weights = np.ones(len(task.targets))
-    joints = arm.closest(task.positions_in_base)
+    joints = joints_closest_to(arm, task.positions_in_base)
     _, move, there = best_aims(
         arm, [d.arm for d in designs], joints, task.positions_in_base, weights, HAND, 0.05
     )[0]
@@ -126,7 +141,7 @@ def test_the_cost_of_an_aim_is_the_mean_square_over_errors_of_the_hand(scene):
     task, _, wanted = scene
     # Of a hand so fine that the surface is flat over its errors.
     hand = replace(HAND, floor=(0.25e-3, np.radians(0.085)))
-    joints, limits = wanted.closest(task.positions_in_base), ROBOT.joint_limits
+    joints, limits = joints_closest_to(wanted, task.positions_in_base), ROBOT.joint_limits
     # A joint at its limit is held for half of the errors only.
     inner = (joints[:, 1] > limits.second.lower + 0.05) & (joints[:, 1] < limits.second.upper - 0.05)
     assert inner.sum() >= 2
@@ -136,7 +151,7 @@ def test_the_cost_of_an_aim_is_the_mean_square_over_errors_of_the_hand(scene):
     arms = arms.displaced(
         np.hstack([np.zeros((4000, 5)), errors(hand.floor, 4000, np.random.default_rng(0))])
     )
-    squares = np.sum((arms.forward(arms.following(there, targets)) - targets) ** 2, axis=(1, 2))
+    squares = np.sum((arms.forward(joints_following(arms, there, targets)) - targets) ** 2, axis=(1, 2))
     assert np.mean(squares) == pytest.approx(cost, rel=0.1)
 
 
@@ -153,7 +168,7 @@ def test_towards_a_design_is_a_turn_about_axis_1_and_a_roll_away_from_it(scene):
 def test_more_tries_are_worth_more(scene):
     task, _, wanted = scene
     measured = fit(scene, wanted.moved(OFF))
-    joints = wanted.closest(task.positions_in_base)
+    joints = joints_closest_to(wanted, task.positions_in_base)
     values = [
         value_of_trying(measured, -OFF, joints, task.positions_in_base, task.tolerances, HAND, k)[0]
         for k in (1, 2, 3)
@@ -184,13 +199,6 @@ def test_settings_keep_what_may_not_be_set(scene):
     settings = best_settings(task, ROBOT, measured, designs[0].verification.joints, tool=0.0)
     assert settings.along == settings.radius == 0.0
     assert settings.d35 == pytest.approx(ROBOT.rigid_link.d35.lower)
-
-
-def test_the_most_forgiving_shape_meets_the_task_and_forgives_no_less(scene):
-    task, designs, wanted = scene
-    best = most_forgiving(task, designs)
-    assert best.design.verification.found
-    assert best.loss <= loss_at_floor(task, wanted, designs[0].verification.joints, HAND) + 1e-12
 
 
 @pytest.mark.parametrize(

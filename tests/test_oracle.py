@@ -7,7 +7,7 @@ import pytest
 from oracle import OracleArm, longest_rod
 from planted import ROBOT, planted_arm
 
-from synth.robot import Arm, ArmBody, BasePose, Interval, LinkShape
+from synth.robot import Arm, ArmBody, BasePose, Interval, LinkShape, clear_of_tube, tube_clear_of_itself
 from synth.synthesis.bound.impossibility import longest_rigid_link
 
 CLOSE = 3e-5  # what the package's bounds give away, m
@@ -50,9 +50,9 @@ def test_both_agree_on_what_is_nearest(arm):
 def test_both_agree_on_the_room_it_takes_up(arm):
     oracle, body = OracleArm.of(arm), ArmBody(arm)
     assert oracle.lowest() == pytest.approx(body.lowest(), abs=1e-6)
-    assert min(oracle.tube_from_itself(), 0.02) == pytest.approx(body.tube_from_itself(), abs=CLOSE)
+    assert min(oracle.tube_from_itself(), 0.02) == pytest.approx(tube_clear_of_itself(body), abs=CLOSE)
     for joints in joints_of(np.random.default_rng(2), 5):
-        apart = body.rod_from_tube(joints[1:])[0]
+        apart = clear_of_tube(body, joints[1:])[0]
         assert min(oracle.rod_from_tube(joints), 0.02) == pytest.approx(apart, abs=CLOSE)
 
 

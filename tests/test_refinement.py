@@ -1,6 +1,5 @@
 """Gauss-Newton on many shapes: its derivatives by differences, and where it leads."""
 
-import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -13,11 +12,10 @@ from synth.synthesis.shapes.category_offsets import category_offsets, category_s
 from synth.synthesis.shapes.overlaps import overlaps
 from synth.synthesis.shapes.postures import Postures, TargetsSeen
 from synth.synthesis.shapes.shapes import Shapes, in_equal_arcs, into_limits
-from synth.synthesis.starts.descent import _curvature_of_norm
 from synth.synthesis.starts.refined import relative_weights
-from synth.synthesis.starts.refinement import cleared, level, refine
+from synth.synthesis.starts.refinement import cleared, refine
 from synth.synthesis.starts.residuals import Residuals
-from synth.task import Objective, Obstacle, PointTarget, Topology
+from synth.task import Objective, Obstacle, Topology
 
 FREE = replace(
     ROBOT, name="rigid link to choose", rigid_link=RigidLink(Interval(0.40, 0.5), Interval(0.42, 0.48))
@@ -160,17 +158,6 @@ def test_costs_are_those_of_forward_kinematics_and_become_less(robot, objective)
         assert (after <= before * (1.0 + 1e-12)).all()
 
 
-def test_the_worst_miss_is_less_where_it_counts():
-    worst = {}
-    for objective in Objective:
-        task = noisy(4, objective=objective)
-        refined = refine(task, Shapes.sample(ROBOT, 60, np.random.default_rng(4)))
-        kinematics = refined.shapes.kinematics.each_target()
-        misses = kinematics.forward(*np.moveaxis(refined.joints, -1, 0)) - task.positions_in_base
-        worst[objective] = np.linalg.norm(misses, axis=-1).max(axis=-1).min()
-    assert worst[Objective.MINIMAX] < 0.97 * worst[Objective.LEAST_SQUARES]
-
-
 def test_given_branches_are_kept():
     task = noisy(5)
     shapes = Shapes.sample(ROBOT, 20, np.random.default_rng(5))
@@ -190,38 +177,6 @@ def test_the_parts_in_which_shapes_are_refined_do_not_matter():
     assert best.cost[0] == whole.cost.min()
 
 
-def test_the_curvature_of_the_norm_is_its_second_derivative_where_misses_are_linear():
-    """By differences of the squared p-norm itself, for misses that change linearly."""
-    rng = np.random.default_rng(7)
-    misses, slopes, exponent = rng.uniform(0.5, 1.0, 6), rng.normal(size=(6, 3)), 12.0
-
-    def squared_norm(x):
-        return np.mean((misses + slopes @ x) ** exponent) ** (2.0 / exponent)
-
-    cost = squared_norm(np.zeros(3))
-    shares = cost ** (1.0 - exponent / 2.0) * misses ** (exponent - 2.0) / 6.0
-    slope = slopes.T @ (shares * misses)
-    curvature = slopes.T @ (shares[:, None] * slopes)
-    half = _curvature_of_norm(exponent, np.array([cost]), curvature[None], slope[None])[0]
-    step = 1e-4
-    for i, j in itertools.product(range(3), repeat=2):
-        one, other = step * np.eye(3)[i], step * np.eye(3)[j]
-        mixed = squared_norm(one + other) - squared_norm(one - other)
-        mixed += squared_norm(-one - other) - squared_norm(other - one)
-        assert np.isclose(2.0 * half[i, j], mixed / (4.0 * step**2), rtol=1e-3, atol=1e-3)
-
-
-def test_the_worst_miss_is_levelled_to_what_no_small_change_improves():
-    task = noisy(8, objective=Objective.MINIMAX)
-    refined = level(task, refine(task, Shapes.sample(ROBOT, 60, np.random.default_rng(8))).best(12))
-    rng, best = np.random.default_rng(0), refined.best(1)
-    nearby = np.repeat(best.shapes.unknowns, 200, axis=0)
-    nearby = into_limits(ROBOT, nearby + 1e-3 * rng.normal(size=nearby.shape))
-    aims = TargetsSeen(task.positions_in_base, ROBOT.joint_limits)
-    worst = Postures.nearest(aims, Shapes(ROBOT, nearby).kinematics).squared.max(axis=1)
-    assert worst.min() > (1.0 - 1e-3) * best.cost[0]
-
-
 @pytest.mark.parametrize("objective", list(Objective))
 def test_a_rigid_link_that_is_a_flat_triangle_breaks_nothing(objective):
     robot = replace(ROBOT, rigid_link=RigidLink(Interval(0.2, 0.5), Interval(0.2, 0.6)))
@@ -229,17 +184,6 @@ def test_a_rigid_link_that_is_a_flat_triangle_breaks_nothing(objective):
     unknowns[:, -1] = unknowns[:, -2] + robot.d34  # P3, P4 and P5 in line: P5 cannot move about axis 2
     refined = refine(noisy(9, robot=robot, objective=objective), Shapes(robot, unknowns))
     assert np.isfinite(refined.cost).all()
-
-
-def test_where_all_targets_are_met_the_worst_miss_has_no_slope_and_warns_of_nothing():
-    task, arm = planted_task(10, 5)
-    task = replace(task, floor=None, objective=Objective.MINIMAX)
-    here = Shapes.of(in_equal_arcs(arm))
-    met = refine(replace(task, objective=Objective.LEAST_SQUARES), here, iterations=40)
-    exact = met.shapes.kinematics.each_target().forward(*np.moveaxis(met.joints, -1, 0))[0]
-    task = replace(task, targets=tuple(PointTarget(f"t{i}", point) for i, point in enumerate(exact)))
-    refined = level(task, refine(task, met.shapes))
-    assert refined.cost[0] < 1e-18
 
 
 def test_shapes_are_moved_out_of_an_obstacle_though_only_the_rigid_link_is_in_it():

@@ -4,7 +4,7 @@ from oracle import SPACING, OracleArm
 from planted import ROBOT, planted_arm
 
 from synth.geometry import Box, Capsule, Sphere
-from synth.robot import Arm, ArmBody, LinkShape
+from synth.robot import Arm, ArmBody, LinkShape, clear_of_obstacles, clear_of_tube, tube_clear_of_itself
 
 CLOSE = 3e-5  # what the bound gives away, m
 
@@ -29,7 +29,7 @@ def scene(seed: int):
 @pytest.mark.parametrize("seed", range(12))
 def test_clearance_is_the_least_along_the_curve(seed):
     arm, joints, solids = scene(seed)
-    bounds = ArmBody(arm).from_obstacles(joints, solids)
+    bounds = clear_of_obstacles(ArmBody(arm), joints, solids)
     assert bounds.shape == (3, 3, 2)
     for pair, joint in zip(bounds, joints, strict=True):
         for bound, solid in zip(pair, solids, strict=True):
@@ -42,9 +42,9 @@ def test_clearance_is_the_least_along_the_curve(seed):
 def test_on_the_way_it_is_the_least_of_all_joint_angles_between(seed):
     arm, joints, solids = scene(seed)
     start, end = joints[:1], joints[:1] + [[0.3, -0.2]]
-    bounds = ArmBody(arm).from_obstacles(start, solids, end=end)[0]
+    bounds = clear_of_obstacles(ArmBody(arm), start, solids, end=end)[0]
     steps = start + np.linspace(0, 1, 60)[:, None] * (end - start)
-    at_steps = ArmBody(arm).from_obstacles(steps, solids).min(axis=0)
+    at_steps = clear_of_obstacles(ArmBody(arm), steps, solids).min(axis=0)
     assert ((bounds == -np.inf) == (at_steps < 0)).all()
     clear = at_steps >= 0
     assert (bounds[clear] <= at_steps[clear] + CLOSE).all()
@@ -53,7 +53,7 @@ def test_on_the_way_it_is_the_least_of_all_joint_angles_between(seed):
 
 def test_on_the_way_the_rod_may_meet_the_tube():
     body = ArmBody(curled(0.0))
-    way = body.rod_from_tube(np.array([0.5 * np.pi, 0.5 * np.pi]), np.array([np.pi, 0.0]))
+    way = clear_of_tube(body, np.array([0.5 * np.pi, 0.5 * np.pi]), np.array([np.pi, 0.0]))
     assert way[0] == pytest.approx(0.02)
     assert way[1] == -np.inf
 
@@ -74,13 +74,13 @@ def curled(turn: float) -> Arm:
 
 def test_a_loop_meets_itself():
     """The link turns right round and runs on beside its own start: the tube is in itself by its diameter."""
-    assert ArmBody(curled(6.0)).tube_from_itself() < -0.02
-    assert ArmBody(curled(3.0)).tube_from_itself() == pytest.approx(0.02)
+    assert tube_clear_of_itself(ArmBody(curled(6.0))) < -0.02
+    assert tube_clear_of_itself(ArmBody(curled(3.0))) == pytest.approx(0.02)
 
 
 def test_the_rod_folded_onto_the_link_meets_it():
     body = ArmBody(curled(0.0))
-    clearances = body.rod_from_tube(np.array([0.0, 0.5 * np.pi, np.pi]))
+    clearances = clear_of_tube(body, np.array([0.0, 0.5 * np.pi, np.pi]))
     # Folded back, the rod is inside the tube or beside it by what P5's circle is off the link's end.
     offset, _ = ROBOT.end_effector_circle(0.455, 0.46)
     joint = 0.05 * abs(offset) / body.rod_length

@@ -5,7 +5,7 @@ import pytest
 from planted import ROBOT, planted_arm
 from standing import standing
 
-from synth.measurement import StandingArm, rotation_matrix
+from synth.measurement import StandingArm, joints_closest_to, joints_following, rotation_matrix
 from synth.measurement.markers.standing_arm import FREEDOMS
 
 LIMITS = ROBOT.joint_limits
@@ -57,9 +57,9 @@ def test_closest_and_following_find_the_joints_of_reached_points(seed):
     arm = arm.displaced(rng.normal(size=FREEDOMS) * 0.02)
     joints = postures(rng, 10)
     points = arm.forward(joints)
-    assert np.linalg.norm(arm.forward(arm.closest(points)) - points, axis=1).max() < 1e-8
+    assert np.linalg.norm(arm.forward(joints_closest_to(arm, points)) - points, axis=1).max() < 1e-8
     near = np.clip(joints + rng.normal(size=joints.shape) * 0.03, joints.min() - 1.0, None)
-    assert np.linalg.norm(arm.forward(arm.following(near, points)) - points, axis=1).max() < 1e-5
+    assert np.linalg.norm(arm.forward(joints_following(arm, near, points)) - points, axis=1).max() < 1e-5
 
 
 def test_following_is_as_good_as_the_search_over_all_joints_for_points_off_the_surface():
@@ -67,7 +67,7 @@ def test_following_is_as_good_as_the_search_over_all_joints_for_points_off_the_s
     _, arm = standing(3)
     joints = postures(rng, 30)
     points = arm.forward(joints) + rng.normal(size=(30, 3)) * 3e-3
-    found, best = arm.following(joints, points), arm.closest(points)
+    found, best = joints_following(arm, joints, points), joints_closest_to(arm, points)
     misses = [np.linalg.norm(arm.forward(each) - points, axis=1) for each in (found, best)]
     assert np.mean(misses[0] <= misses[1] + 1e-6) > 0.9
     assert (found >= [LIMITS.base.lower, LIMITS.second.lower]).all()
@@ -86,4 +86,6 @@ def test_many_arms_at_once_are_each_of_them():
         assert np.allclose(
             together.forward(np.broadcast_to(joints, (6, 5, 2)))[k], alone.forward(joints), atol=1e-14
         )
-        assert np.allclose(together.following(joints, points)[k], alone.following(joints, points), atol=1e-9)
+        assert np.allclose(
+            joints_following(together, joints, points)[k], joints_following(alone, joints, points), atol=1e-9
+        )

@@ -7,11 +7,9 @@ import sys
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from wrong_tasks import INLINE, TASK, WRONG, inline, task
+from right_tasks import INLINE, TASK, task
+from task_texts import ROBOT, mistakes_in, write
 
-from synth.errors import InputError
 from synth.robot import PRESETS, Interval, JointLimits, MalleableLink, RigidLink, Robot
 from synth.task import (
     DEFAULT_TOLERANCE,
@@ -21,19 +19,7 @@ from synth.task import (
     load_robot,
     load_task,
     parse_task,
-    task_schema,
 )
-
-ROBOT = """\
-name: malleable-2dof
-length_unit: mm
-d12: 58
-link: {length: [550, 700], min_bend_radius: 110, diameter: 50, max_total_bend_deg: 270}
-tip_offset: 20
-d34: 49
-rigid_link: {d35: 455, d45: [455, 460]}
-joint_limits_deg: {base: [10, 350], second: [53, 307]}
-"""
 
 AS_READ = Robot(
     name="malleable-2dof",
@@ -46,18 +32,6 @@ AS_READ = Robot(
         Interval(math.radians(10), math.radians(350)), Interval(math.radians(53), math.radians(307))
     ),
 )
-
-
-def mistakes_in(read, *args, **kwargs):
-    with pytest.raises(InputError) as caught:
-        read(*args, **kwargs)
-    assert caught.value.mistakes
-    return caught.value.mistakes
-
-
-def write(path, content):
-    path.write_bytes(content if isinstance(content, bytes) else content.encode())
-    return path
 
 
 class TestRightFiles:
@@ -191,74 +165,6 @@ class TestRightFiles:
         assert (many - few) / 1000 < 1.05 * (some - few) / 100
 
 
-class TestWrongFiles:
-    @pytest.mark.parametrize(("content", "key", "line", "words"), WRONG.values(), ids=WRONG)
-    def test_the_only_mistake_has_its_place_and_sentence(self, tmp_path, content, key, line, words):
-        path = write(tmp_path / "task.yaml", content)
-        mistakes = mistakes_in(load_task, path)
-        assert [(m.key, m.line, m.file) for m in mistakes] == [(key, line, str(path))]
-        str(mistakes[0]).encode()  # can be printed
-        for word in words.split():
-            assert word in mistakes[0].message
-
-    def test_all_mistakes_of_a_file_come_in_its_order(self):
-        content = (
-            TASK.replace("synth: 1 ", "synth: 3 ")
-            .replace("malleable-2dof", "maleable-2dof")
-            .replace("floor: 5", "floor: {}")
-            .replace("tolerance: 2.0", "tolerence: 2.0")
-            .replace("[-300, 420, 180]", "[-300, x, .nan]")
-            .replace("name: place", "name: pick")
-            .replace("objective", "objectiv")
-        ) + "surface: {}\nname: again\n"
-        assert [(mistake.line, mistake.key) for mistake in mistakes_in(parse_task, content)] == [
-            (1, "synth"),
-            (4, "robot"),
-            (6, "floor"),
-            (9, "targets[0].tolerence"),
-            (10, "targets[1].name"),
-            (10, "targets[1].position[1]"),
-            (10, "targets[1].position[2]"),
-            (11, "objectiv"),
-            (13, "surface"),
-            (14, "name"),
-        ]
-
-    def test_a_triangle_is_checked_beside_other_mistakes_of_the_robot(self):
-        content = inline("d34: 49", "d34: 1000").replace("110", "0")
-        keys = [mistake.key for mistake in mistakes_in(parse_task, content)]
-        assert keys == ["robot.link.min_bend_radius", "robot.rigid_link"]
-
-    def test_a_flat_triangle_is_one(self):
-        metres = inline("d34: 49", "d34: 5").replace("d12", "length_unit: m\n  d12")  # 460 - 455 = 5
-        parse_task(metres.replace("100, 200, 300", "1e5, 2e5, 3e5"))
-        parse_task(inline("d34: 49", "d34: 0.3").replace("455", "0.1").replace("460", "0.2"))
-
-    @pytest.mark.parametrize("make", [lambda path: path / "none.yaml", lambda path: path, lambda _: "a\0b"])
-    @pytest.mark.parametrize("load", [load_task, load_robot])
-    def test_what_cannot_be_opened_is_named(self, tmp_path, make, load):
-        (mistake,) = mistakes_in(load, make(tmp_path))
-        assert mistake.file == str(make(tmp_path))
-        assert any(word in mistake.message for word in ("no such file", "directory", "cannot be read"))
-
-    def test_unreadable_file(self, tmp_path, monkeypatch):
-        def deny(*_args, **_kwargs):
-            raise PermissionError(13, "Permission denied")
-
-        monkeypatch.setattr("pathlib.Path.open", deny)
-        (mistake,) = mistakes_in(load_task, tmp_path / "task.yaml")
-        assert mistake.message == "cannot be read: Permission denied"
-
-    def test_billion_laughs_cost_nothing(self):
-        levels = "".join(f"b{i}: &b{i} [{', '.join([f'*b{i - 1}'] * 10)}]\n" for i in range(1, 12))
-        mistakes = mistakes_in(parse_task, "b0: &b0 [ha, ha]\n" + levels)
-        assert sum("aliases" in mistake.message for mistake in mistakes) == 110
-
-    def test_numbers_that_differ_are_printed_so_that_they_differ(self):
-        (mistake,) = mistakes_in(parse_task, inline("d34: 49", "d34: 4.9999999"))
-        assert "at least 5, more than d34 = 4.9999999" in mistake.message
-
-
 class TestRobotFiles:
     def test_mistakes_carry_the_name_and_line_of_the_robot_file(self, tmp_path):
         robot = write(tmp_path / "mine.yaml", ROBOT.replace("d12: 58", "d12: -1").replace("d45", "d46"))
@@ -328,100 +234,6 @@ class TestMappings:
         assert any("nested" in mistake.message for mistake in mistakes_in(parse_task, mapping))
 
 
-class TestSchema:
-    def test_is_plain_json_schema(self):
-        schema = task_schema()
-        assert json.loads(json.dumps(schema, allow_nan=False)) == schema
-        text = json.dumps(schema)
-        for bogus in ('"gt"', '"ge"', '"lt"', '"le"', ": null", "<one>"):
-            assert bogus not in text
-
-    def test_has_the_fields_of_the_format(self):
-        schema = task_schema()
-        fields = (
-            "synth name length_unit robot base floor topology objective targets surface obstacles current"
-        )
-        assert set(schema["properties"]) == set(fields.split())
-        assert set(schema["required"]) == {"synth", "length_unit", "robot"}
-        assert schema["anyOf"] == [{"required": ["targets"]}, {"required": ["surface"]}]
-        assert schema["additionalProperties"] is False
-
-
-def reads_or_refuses(read, *args):
-    try:
-        read(*args)
-    except InputError as error:
-        str(error).encode()  # what it says can be printed
-
-
-PIECES = [
-    *":,[]{}#&*!|>'\"%@`?-~.<\\\n\t \r\0\x07\x85\u2028\ufeff",
-    "<<",
-    "---",
-    "...",
-    "!!",
-    "null",
-    "1e999",
-    "- ",
-    ": ",
-]
-
-
-@st.composite
-def mutations(draw):
-    content = draw(st.sampled_from([TASK, INLINE, ROBOT]))
-    for _ in range(draw(st.integers(1, 4))):
-        start = draw(st.integers(0, len(content)))
-        end = min(len(content), start + draw(st.integers(0, 12)))
-        inserted = draw(st.sampled_from(PIECES) | st.text(max_size=4) | st.just(content[start : end + 40]))
-        content = content[:start] + inserted + content[end:]
-    return content.encode(errors="surrogatepass")
-
-
 @pytest.fixture(scope="module")
 def path(tmp_path_factory):
     return tmp_path_factory.mktemp("fuzz") / "fuzz.yaml"
-
-
-class TestFuzz:
-    @given(content=st.binary(max_size=200))
-    @settings(max_examples=200, derandomize=True)
-    def test_any_bytes(self, path, content):
-        reads_or_refuses(load_task, write(path, content))
-
-    @given(content=mutations())
-    @settings(max_examples=400, derandomize=True)
-    def test_any_mutation(self, path, content):
-        reads_or_refuses(load_task, write(path, content))
-        reads_or_refuses(load_robot, path)
-
-    @given(
-        value=st.recursive(
-            st.none() | st.booleans() | st.integers() | st.floats() | st.text(),
-            lambda inner: st.lists(inner) | st.dictionaries(st.text() | st.integers(), inner),
-            max_leaves=6,
-        ),
-        key=st.sampled_from(
-            [
-                "synth",
-                "name",
-                "length_unit",
-                "robot",
-                "base",
-                "floor",
-                "topology",
-                "objective",
-                "targets",
-                "obstacles",
-            ]
-        ),
-    )
-    @settings(max_examples=300, derandomize=True)
-    def test_any_value(self, value, key):
-        mapping = {
-            "synth": 1,
-            "length_unit": "m",
-            "robot": "malleable-2dof",
-            "targets": [{"position": [1, 1, 1]}],
-        }
-        reads_or_refuses(parse_task, mapping | {key: value})

@@ -11,6 +11,7 @@ from synth.cli.say import say
 from synth.export import calibration_to_json
 from synth.measurement import StandingArm, calibrate, load_points, sigma_of
 from synth.rounding import rounded_up
+from synth.sentences import BULLET
 from synth.task import load_shapes
 
 if TYPE_CHECKING:
@@ -55,7 +56,7 @@ def calibrate_file(
                 else "joint 1 {:.2f} deg, joint 2 {:.2f} deg; ".format(*map(math.degrees, target["joints"]))
             )
             say(
-                f"• {target['name']}: {angles}miss below {rounded_up(target['miss_95'], digits=2)} "
+                f"{BULLET} {target['name']}: {angles}miss below {rounded_up(target['miss_95'], digits=2)} "
                 "mm in 19 of 20 cases"
             )
     return ExitCode.NOT_MET if found.refusal else ExitCode.DONE

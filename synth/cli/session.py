@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from synth.synthesis import Progress
 
 _T = TypeVar("_T")
-# What drawing the sheet and writing take on a usual machine, s; and of many targets each.
-_WRITING, _WRITING_ONE = 1.0, 3e-5
+_WRITING = 1.0  # s, what drawing the sheet and writing take on a usual machine
+_WRITING_ONE = 3e-5  # s, likewise of each of many targets
 _LATE = 0.4  # s, in which a small task is still read and looked at
 DEBUG = "SYNTH_DEBUG"  # if this is set in the environment, what nobody foresaw is shown with its traceback
 
@@ -106,7 +106,7 @@ class Session:
             return otherwise
 
     def tell_of(self, what: str, error: BaseException) -> None:
-        """Say in a sentence what broke; with its traceback for who asked for that."""
+        """Say in a sentence what broke; with its traceback if that was asked for."""
         self.broken = True
         if os.environ.get(DEBUG):
             say("".join(traceback.format_exception(error)), on_stderr=True)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from synth.guide import BULLET, FOUND, MISSED
+from synth.sentences import BULLET, FOUND, MISSED
 
 if TYPE_CHECKING:
     from typing import TextIO

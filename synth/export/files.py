@@ -7,11 +7,10 @@ import errno
 import json
 import os
 import tempfile
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.checks import refuse_unless
 from synth.errors import SynthError, in_a_line
 from synth.export.markers import markers_csv
@@ -27,8 +26,7 @@ _MOST_INDENTED = 1000  # targets in a file that is laid out for the eye
 SOLUTION_FILES = ("solution.json", "guide.pdf", "markers.csv")
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Written:
     """What became of a set of files.
 
@@ -100,7 +98,7 @@ def write_all(
     Args:
         files: Contents by name.
         directory: Where to; it is made if it is not there.
-        without: Names of files that shall not be there any more.
+        without: Names of files that must not be there any more.
 
     Returns:
         The paths of the files, in the order given.

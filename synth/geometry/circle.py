@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, Self
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.errors import GeometryError
 from synth.geometry.closest_angles import closest_angles
 from synth.geometry.distances import ArmDistances, realise, squared_distances
@@ -17,16 +16,13 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
-class SweptCircle:
-    """Axis 2 and the circle of P5 about it, in the base frame (axis 1 is z, P1 the origin).
-
-    It holds what a shape of the arm means for its workspace, wherever P3 and P4 are marked on axis 2.
+@frozen_value
+class CircleAboutAxis:
+    """A circle in space, about an axis of its own.
 
     Attributes:
-        centre: Centre c of the circle, a point of axis 2, shape (3,), m.
-        axis: Direction u of axis 2, from P3 towards P4, shape (3,); stored with length 1.
+        centre: Centre c of the circle, a point of the axis, shape (3,), m.
+        axis: Direction u of the axis, shape (3,); stored with length 1.
         radius: Radius R of the circle, m.
 
     Raises:
@@ -45,7 +41,7 @@ class SweptCircle:
         object.__setattr__(self, "axis", frozen(np.asarray(self.axis) / length))
 
     @classmethod
-    def from_points(cls, points: ArrayLike) -> SweptCircle:
+    def from_points(cls, points: ArrayLike) -> Self:
         """Return the circle of P5 about the line from P3 to P4.
 
         Args:
@@ -55,6 +51,36 @@ class SweptCircle:
         span = p4 - p3
         centre = p3 + span * np.dot(p5 - p3, span) / max(np.dot(span, span), np.finfo(np.float64).tiny)
         return cls(centre, span, float(np.linalg.norm(p5 - centre)))
+
+    def axis_points(self, d34: float, offset: float) -> FloatArray:
+        """Return P3 and P4, shape (2, 3), m: the points of axis 2 to be marked.
+
+        Args:
+            d34: Distance of P3 and P4, m.
+            offset: From P3 to the centre of the circle along the axis, m; negative if P3 lies beyond.
+        """
+        return np.asarray(self.centre + np.outer([-offset, d34 - offset], self.axis))
+
+    def points(self, angles: ArrayLike) -> FloatArray:
+        """Return points of the circle, shape (..., 3), m, at angles, shape (...), rad, about u.
+
+        Angle 0 is where the circle reaches out along the coordinate axis most nearly across u: an
+        arbitrary choice, not the zero of joint 2.
+        """
+        start = _part_across(self.axis, np.eye(3)[np.argmin(np.abs(self.axis))])
+        start /= np.linalg.norm(start)
+        angles = np.asarray(angles, dtype=np.float64)[..., None]
+        across = np.cos(angles) * start + np.sin(angles) * np.cross(self.axis, start)
+        return np.asarray(self.centre + self.radius * across)
+
+
+@frozen_value
+class SweptCircle(CircleAboutAxis):
+    """Axis 2 and the circle of P5 about it, in the base frame (axis 1 is z, P1 the origin).
+
+    It holds what a shape of the arm means for its workspace, wherever P3 and P4 are marked on axis 2, of
+    which `axis` is the direction from P3 towards P4.
+    """
 
     @classmethod
     def from_squared_distances(cls, distances: ArmDistances, *, chirality: Literal[1, -1] = 1) -> SweptCircle:
@@ -85,15 +111,6 @@ class SweptCircle:
         It is 0 where they are parallel or meet, and has the sign of the orientation of (P1, P2, P3, P4).
         """
         return float(self.centre[0] * self.axis[1] - self.centre[1] * self.axis[0])
-
-    def axis_points(self, d34: float, offset: float) -> FloatArray:
-        """Return P3 and P4, shape (2, 3), m: the points of axis 2 to be marked.
-
-        Args:
-            d34: Distance of P3 and P4, m.
-            offset: From P3 to the centre of the circle along the axis, m; negative if P3 lies beyond.
-        """
-        return np.asarray(self.centre + np.outer([-offset, d34 - offset], self.axis))
 
     def squared_distances(self, d12: float, d34: float, offset: float) -> ArmDistances:
         """Return the squared distances of the arm, m^2, with P1, ..., P4 marked on the axes.
@@ -138,18 +155,6 @@ class SweptCircle:
             np.dot(constant, constant) - 4.0 * (self.radius * self.moment) ** 2,
         ]
         return WorkspaceSurface(d12, -((0.5 * d12 * d34) ** 2) * np.array(q))
-
-    def points(self, angles: ArrayLike) -> FloatArray:
-        """Return points of the circle, shape (..., 3), m, at angles, shape (...), rad, about u.
-
-        Angle 0 is where the circle reaches out along the coordinate axis most nearly across u: an
-        arbitrary choice, not the zero of joint 2.
-        """
-        start = _part_across(self.axis, np.eye(3)[np.argmin(np.abs(self.axis))])
-        start /= np.linalg.norm(start)
-        angles = np.asarray(angles, dtype=np.float64)[..., None]
-        across = np.cos(angles) * start + np.sin(angles) * np.cross(self.axis, start)
-        return np.asarray(self.centre + self.radius * across)
 
     def closest_point(self, points: ArrayLike) -> FloatArray:
         """Return the point of the swept surface that is closest to each point, joint limits aside.

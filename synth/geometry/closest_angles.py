@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.geometry.trigonometric import critical_angles, root_angles, sampling_angles
 
 if TYPE_CHECKING:
@@ -17,8 +16,6 @@ _DEGREE = 4  # of the stationarity condition, below
 _BLOCK = 2048  # points at a time: what they need stays in the processor's cache
 _TINY = np.finfo(np.float64).tiny
 _ROUNDING = 4.0 * np.finfo(np.float64).eps
-# Brackets are at most pi / 16 wide; halved so often, they are narrower than the last digit of an angle.
-_HALVINGS = 52
 _BESIDE = 1e-14  # rad
 
 
@@ -33,7 +30,7 @@ def closest_angles(
     more than eight angles. They separate the minima, together with the sharp turns of the curve, an even
     grid (Q may vanish everywhere, as for the centre of a circle in a plane with axis 1) and the middles
     between all these. Each minimum lies where the slope of the distance changes from falling to rising,
-    and is found there by bisection, which no multiplicity of the root can mislead.
+    and is found there within a bracket (Chandrupatla, 1997), which no multiplicity of the root can mislead.
 
     Args:
         centre: Its centre c, shape (3,), m.
@@ -51,8 +48,7 @@ def closest_angles(
     return np.concatenate([_closest_in_block(section, *part) for part in parts])
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class _Section:
     """The curve (rho(t), z(t)) of P5(t) = c + cos(t) s + sin(t) q, with s and q of length R.
 
@@ -120,15 +116,25 @@ def _closest_in_block(section: _Section, rho: FloatArray, z: FloatArray) -> Floa
     falling = slopes < 0.0
     which, left = np.nonzero(falling[:, :-1] & ~falling[:, 1:])
     lower, upper, rho, z = angles[which, left], angles[which, left + 1], rho[which], z[which]
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (lower + upper)
-        falling = section.miss(middle, rho, z)[1] < 0.0
-        lower, upper = np.where(falling, middle, lower), np.where(falling, upper, middle)
-    misses = section.miss(upper, rho, z)[0]
+    bottoms = _roots(section, lower, upper, rho, z)
+    misses = section.miss(bottoms, rho, z)[0]
     order = np.lexsort((misses, which))
     which, first = np.unique(which[order], return_index=True)
     found = order[first]
     size = np.linalg.norm(section.centre) + np.linalg.norm(section.start)
     as_near = misses[found] <= least[which] + _ROUNDING * (size + rho[found] + np.abs(z[found]))
-    best[which[as_near]] = upper[found[as_near]]
+    best[which[as_near]] = bottoms[found[as_near]]
     return best
+
+
+def _roots(
+    section: _Section, lower: FloatArray, upper: FloatArray, rho: FloatArray, z: FloatArray
+) -> FloatArray:
+    """Return where the distances of points stop falling, within brackets that nothing leads out of."""
+    if not len(lower):
+        return upper
+    # 0.7 s to import, paid only when it is used; scipy has no types of its own.
+    from scipy.optimize.elementwise import find_root  # type: ignore[import-untyped]  # noqa: PLC0415
+
+    found = find_root(lambda *at: section.miss(*at)[1], (lower, upper), args=(rho, z))
+    return np.asarray(found.x)

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.errors import GeometryError
 from synth.geometry._gamma_polynomials import workspace_polynomials
 from synth.geometry.distances import ArmDistances, cayley_menger
@@ -17,8 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class WorkspaceSurface:
     """The quartic surface on which the end effector of a 2-DOF arm moves.
 

@@ -7,20 +7,18 @@ and offset max over the solid of n . x leave the whole solid on one side.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, frozen_value
 from synth.checks import Checks
 from synth.geometry.rotations import roll_pitch_yaw, rotation_of
 
 _UP = np.array([0.0, 0.0, 1.0])
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Sphere:
     """A ball.
 
@@ -62,8 +60,7 @@ class Sphere:
         return Sphere((self.centre - position) @ rotation, self.radius)
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Capsule:
     """All points within a radius of a segment.
 
@@ -113,8 +110,7 @@ class Capsule:
         return np.asarray(across / np.linalg.norm(across))
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Box:
     """A box.
 

@@ -16,25 +16,11 @@ from synth.guide.loop import (
 from synth.guide.markers import LINK_END, MARKERS, Guide, Placement, make_guide
 from synth.guide.posture import HoldPosture, hold_posture
 from synth.guide.sensitivity import ShapeTolerance
-from synth.guide.text import (
-    BULLET,
-    FOUND,
-    MISSED,
-    clearance_told,
-    guide_text,
-    help_told,
-    proof_sentence,
-    reasons_told,
-    solution_text,
-    summary_text,
-)
+from synth.guide.text import guide_text, solution_text
 
 __all__ = [
-    "BULLET",
-    "FOUND",
     "LINK_END",
     "MARKERS",
-    "MISSED",
     "Check",
     "Correction",
     "Guide",
@@ -47,17 +33,12 @@ __all__ = [
     "best_settings",
     "check_arm",
     "check_text",
-    "clearance_told",
     "correction_sentence",
     "guide_text",
     "headline_sentence",
-    "help_told",
     "hold_posture",
     "instructions",
     "make_guide",
-    "proof_sentence",
-    "reasons_told",
     "solution_text",
-    "summary_text",
     "swept_targets",
 ]

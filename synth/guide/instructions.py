@@ -12,15 +12,10 @@ import numpy as np
 
 from synth.guide.sensitivity import LARGEST_TILT
 from synth.rounding import Unit, rounded_down, rounded_up
-from synth.synthesis import HAND_PLACES, HAND_TURNS
 
 if TYPE_CHECKING:
     from synth.guide.markers import Guide
-    from synth.robot import LinkShape
-    from synth.synthesis import Forgiveness
 
-_STRAIGHT = 100.0  # m, a bend radius that no eye and no hand can tell from none
-_NO_HAND = 0.02  # a chance below is none to count on, and too small to be told from so many tries
 _MOST_DIGITS = 6
 _EXAMPLE = 0.1  # m along the link: a point that tells what the others are
 
@@ -34,7 +29,7 @@ def instructions(guide: Guide) -> tuple[str, ...]:
     steps = [] if guide.cut is None else [cut_sentence(*guide.cut)]
     limit = rounded_up(guide.arm.robot.link.min_bend_radius)
     shape = (
-        f"Soften the link and shape it: {link_sentence(guide.link)}. "
+        f"Soften the link and shape it: {guide.link.describe()}. "
         f"Bend it nowhere tighter than to a radius of {limit} mm. "
         f"P3 and P4 come to their places; {station_sentence(guide)}"
     )
@@ -44,7 +39,7 @@ def instructions(guide: Guide) -> tuple[str, ...]:
         shape,
         f"{axis_sentence(guide)} {distances_sentence(guide)}",
         " ".join(tolerance_sentences(guide)),
-        *([] if guide.forgiveness is None else [hand_sentence(guide.forgiveness)]),
+        *([] if guide.forgiveness is None else [guide.forgiveness.describe()]),
     )
 
 
@@ -111,15 +106,6 @@ def distances_sentence(guide: Guide) -> str:
     return f"By tape: {told} mm."
 
 
-def link_sentence(shape: LinkShape) -> str:
-    """Return the numbers of a link's shape, without a full stop."""
-    length = f"link {1e3 * shape.length:.1f} mm long"
-    if shape.min_bend_radius >= _STRAIGHT:
-        return f"{length}, as good as straight"
-    radius, bend = rounded_down(shape.min_bend_radius), math.degrees(shape.total_bend)
-    return f"{length}, smallest bend radius {radius} mm, {bend:.1f} deg of bend in all"
-
-
 def tolerance_sentences(guide: Guide) -> tuple[str, ...]:
     """Return how precisely the shape must be held, as sentences; none for a task that is not met."""
     tolerance = guide.tolerance
@@ -135,22 +121,6 @@ def tolerance_sentences(guide: Guide) -> tuple[str, ...]:
         f"{shift} and {tilt} deg ({tolerance.direction_target}); within half of each if both are off.",
         f"P3 off against P4 by {marker} mm across the axis is such a tilt.",
     )
-
-
-def hand_sentence(forgiveness: Forgiveness) -> str:
-    """Return what becomes of the task when a hand as published bends the link, and nobody corrects it."""
-    (place, place_spread), (turn, turn_spread) = HAND_PLACES, HAND_TURNS
-    hand = (
-        f"a hand as published ({1e3 * place:.1f} ± {1e3 * place_spread:.1f} mm, "
-        f"{math.degrees(turn):.0f} ± {math.degrees(turn_spread):.1f} deg)"
-    )
-    miss = f"expect a worst miss of {rounded_up(forgiveness.expected_worst_miss)} mm"
-    rest = f"joints recomputed from the measured arm; {miss}. So measure, and correct until it is right."
-    if forgiveness.chance < _NO_HAND:
-        never = "No hand holds this at the first try"
-        return f"{never}: {hand} meets every target in less than 2 % of tries, {rest}"
-    share = min(int(rounded_down(forgiveness.chance, Unit.PERCENT, 0)), 99)
-    return f"At the first try {hand} meets every target in about {share} % of tries, {rest}"
 
 
 def _kept(value: float, unit: Unit) -> str:

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.checks import refuse_unless
 from synth.guide.base_place import BasePlace, base_place
 from synth.guide.posture import HoldPosture, hold_posture
 from synth.guide.sensitivity import ShapeTolerance, shape_tolerance
 from synth.robot import BasePose
-from synth.synthesis import MOST_MOTIONS, Design, hand_forgiveness, motions
+from synth.synthesis import Design, ways_and_forgiveness
 from synth.task import Task
 
 if TYPE_CHECKING:
@@ -30,8 +29,7 @@ _VERTICAL = 1e-9  # of a direction's horizontal part: no heading below
 _LEAST_GAP = 0.010  # m; a point nearer to the link's end than this would only be mistaken for it
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Placement:
     """Where everything stands while joint 1 is held at one angle. Task frame, m.
 
@@ -66,8 +64,7 @@ class Placement:
             object.__setattr__(self, name, frozen(getattr(self, name)))
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Guide:
     """What a person needs to bend the link into its shape, and to tell whether it is right.
 
@@ -139,11 +136,9 @@ def make_guide(task: Task, design: Design) -> Guide:
 @lru_cache(maxsize=8)
 def _guide(task: Task, design: Design) -> Guide:
     """Return the guide: text, JSON and sheet of a run ask for the same one."""
-    arm, check, figures = design.arm, design.verification, design.figures
+    arm, check = design.arm, design.verification
     stations, posture = _stations(arm.shape.length), hold_posture(task, arm)
-    forgiveness = None
-    if check.found:
-        forgiveness = figures.forgiveness if figures else hand_forgiveness(task, arm, check.joints)
+    ways, forgiveness = ways_and_forgiveness(task, design)
     return Guide(
         place=base_place(task, design),
         posture=posture,
@@ -154,7 +149,7 @@ def _guide(task: Task, design: Design) -> Guide:
         met=check.found,
         tolerance=shape_tolerance(task, design),
         forgiveness=forgiveness,
-        ways=motions(task, design) if check.found and len(task.targets) <= MOST_MOTIONS else (),
+        ways=ways,
     )
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.robot import ArmBody
+from synth.robot import ArmBody, clear_of_obstacles, clear_of_tube
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
@@ -57,7 +57,7 @@ def hold_posture(task: Task, arm: Arm) -> HoldPosture:
     body = ArmBody(arm)
     for second in seconds[_clear_by_itself(task, body, seconds)]:
         joints = np.column_stack([first, np.full(len(first), second)])
-        clearances = body.from_obstacles(joints, task.solids).min(axis=(1, 2), initial=math.inf)
+        clearances = clear_of_obstacles(body, joints, task.solids).min(axis=(1, 2), initial=math.inf)
         clear = np.flatnonzero(clearances >= body.clear)
         if len(clear):
             return HoldPosture(float(first[clear[0]]), float(second), clear=True)
@@ -66,7 +66,7 @@ def hold_posture(task: Task, arm: Arm) -> HoldPosture:
 
 def _clear_by_itself(task: Task, body: ArmBody, seconds: FloatArray) -> FloatArray:
     """Return at which angles of joint 2 the rigid link is clear of the floor and of the malleable one."""
-    clear = body.rod_from_tube(seconds) >= body.clear
+    clear = clear_of_tube(body, seconds) >= body.clear
     if task.floor_in_base is not None:
         heights = body.arm.kinematics.forward(0.0, seconds)[:, 2] - body.rod_radius
         clear &= heights >= task.floor_in_base + body.clear

@@ -25,9 +25,11 @@ _WHOLE_TURN = 2.0 * math.pi - 1e-9  # rad
 # this, and a first order says nothing of it.
 _NO_RATE = 1e-12  # m/rad
 LARGEST_TILT = math.radians(10.0)
-# The first order is tried: errors of the size that it allows, in this many directions, on the targets that
-# are lost first, are made smaller by the share of the slack that they take, again and again.
-_DIRECTIONS, _TRIED_TARGETS, _TRIALS = 96, 100, 4
+# The first order is tried: errors of the size that it allows are made smaller by the share of the slack that
+# they take, again and again.
+_DIRECTIONS = 96  # of the errors
+_TRIED_TARGETS = 100  # on which they are tried: those that are lost first
+_TRIALS = 4
 _NO_SLACK = 1e-12  # m
 # Velocities of P5 this nearly parallel are those of the rim of the workspace, which P5 can leave in two
 # directions; on a circle of 0.5 m it begins 0.03 mm inside the rim.

@@ -3,7 +3,8 @@
 from synth.robot.arm import Arm, JointBranches
 from synth.robot.base_places import BaseChoices, BasePlaces, BaseRange
 from synth.robot.base_pose import BasePose
-from synth.robot.clearance import MOST_CLEARANCE, ArmBody
+from synth.robot.body import ArmBody
+from synth.robot.clearance import MOST_CLEARANCE, clear_of_obstacles, clear_of_tube, tube_clear_of_itself
 from synth.robot.closest_joints import closest_joints
 from synth.robot.hardware import (
     PRESETS,
@@ -61,6 +62,8 @@ __all__ = [
     "arc_motion",
     "chain_end",
     "chain_points",
+    "clear_of_obstacles",
+    "clear_of_tube",
     "closest_joints",
     "into_turn",
     "link_to_pose",
@@ -69,6 +72,7 @@ __all__ = [
     "pose_miss",
     "random_curvatures",
     "stepped",
+    "tube_clear_of_itself",
     "turned",
     "why_no_link",
 ]

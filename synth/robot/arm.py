@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.checks import Checks
 from synth.geometry import (
     Category,
@@ -31,8 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class JointBranches:
     """The answers of the inverse kinematics: up to two branches for each point, the better first.
 
@@ -61,8 +60,7 @@ class JointBranches:
         return self.joints[self.miss <= tolerance]
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Arm:
     """A robot with its link stiffened in one shape. Points are in the task frame, in metres.
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.checks import Checks, wrong_type
 from synth.names import given_twice
 from synth.robot.base_pose import BasePose
@@ -99,8 +99,7 @@ class BaseRange:
         return bool(((row >= self.bounds[0] - slack) & (row <= self.bounds[1] + slack)).all())
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class BaseChoices:
     """Places of which the robot is to stand at one, such as those where there are clamps.
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.checks import Checks
 from synth.geometry import rotation_of
 
@@ -18,8 +18,7 @@ if TYPE_CHECKING:
 _UPRIGHT = 1e-9  # rad; an axis 1 that leans by less does so by rounding
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class BasePose:
     """The pose of the robot's base frame in the task frame.
 

@@ -14,13 +14,12 @@ And within a diameter of the second joint link and rod are the joint.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
 from synth.geometry import least_values
+from synth.robot.body import ROUNDING
 from synth.robot.hardware import turned
 
 if TYPE_CHECKING:
@@ -28,202 +27,138 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from synth.arrays import FloatArray
     from synth.geometry import Solid
-    from synth.robot.arm import Arm
+    from synth.robot.body import ArmBody
 
-# By how much a stated clearance may be less than the true one, m, for an arm of up to two metres; for a
-# longer one in proportion, or a bound for an arm as long as a street takes minutes.
-_TOLERANCE = 2e-5
 MOST_CLEARANCE = 0.1  # m; a clearance beyond is stated as this much
 _SELF_CEILING = 0.02  # m, likewise for what the arm keeps from itself
-_ROUNDING = 2e-6  # m
 
 
 # From where to where along it, and how fast a distance can change along it.
 _Side = tuple[float, float, "float | FloatArray"]
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
-class ArmBody:
-    """The room that an arm takes up, in its base frame.
+def clear_of_obstacles(
+    body: ArmBody,
+    start: FloatArray,
+    solids: Sequence[Solid],
+    *,
+    end: FloatArray | None = None,
+    enough: float = MOST_CLEARANCE,
+) -> FloatArray:
+    """Return how far tube and rod keep from solids at joint angles, or on straight ways between them.
 
-    Attributes:
-        arm: The arm.
+    On the way a point moves by no more than |d theta1| times its distance from axis 1, plus, on the
+    rod, |d theta2| times its distance from axis 2.
+
+    Args:
+        body: The arm.
+        start: Angles (theta1, theta2), shape (n, 2), rad.
+        solids: Solids in the base frame.
+        end: Angles at which the ways end, both joints moving evenly, shape (n, 2), rad.
+        enough: Clearance, m, beyond which nobody asks how much it is: the less, the faster.
+
+    Returns:
+        Lower bounds of the distance between the surfaces, at most `enough`, negative inside; shape
+        (n, len(solids), 2), the tube first. On a way that is not clear, minus infinity.
     """
+    ways, count = _Ways(start, end), len(solids)
+    if count == 0:
+        return np.empty((len(start), 0, 2))
+    way, solid = np.repeat(np.arange(len(start)), count), np.tile(np.arange(count), len(start))
+    link, rod = body.arm.shape.length, body.rod_length
+    turn, second = ways.travel.T[:, way]
 
-    arm: Arm
+    def distance(which: NDArray[np.intp], points: FloatArray, joints: FloatArray) -> FloatArray:
+        there, values = turned(points, joints[:, 0]), np.empty(len(which))
+        for index, each in enumerate(solids):
+            mine = solid[which] == index
+            values[mine] = each.distance(there[mine])
+        return values
 
-    @property
-    def tolerance(self) -> float:
-        """By how much a clearance stated here may be less than the true one, m."""
-        return _TOLERANCE * max(1.0, 0.5 * (self.arm.shape.length + self.rod_length))
+    def from_tube(which: NDArray[np.intp], at: FloatArray) -> FloatArray:
+        return distance(which, body.tube(at[:, 0]), ways.joints(way[which], at[:, 1]))
 
-    @property
-    def clear(self) -> float:
-        """A bound of no less than this, m, is of what is clear: rounding aside, nothing overlaps."""
-        return -self.tolerance - _ROUNDING
+    def from_rod(which: NDArray[np.intp], at: FloatArray) -> FloatArray:
+        joints = ways.joints(way[which], at[:, 1])
+        return distance(which, body.rod(at[:, 0], joints[:, 1]), joints)
 
-    @property
-    def tube_radius(self) -> float:
-        """Half the diameter of the malleable link, m."""
-        return 0.5 * self.arm.robot.link.diameter
+    bounds = []
+    for values, first, last, radius, rate in (
+        (from_tube, min(body.tube_radius, link), link, body.tube_radius, turn * link),
+        (from_rod, 0.0, rod, body.rod_radius, turn * (link + rod) + second * rod),
+    ):
+        sides: list[_Side] = [(first, last, 1.0), (0.0, ways.share, rate)]
+        bounds.append(_least(body.tolerance, values, sides, radius, enough, ways.floor))
+    return np.stack(bounds, axis=-1).reshape(len(start), count, 2)
 
-    @property
-    def rod_radius(self) -> float:
-        """Half the diameter of the rigid link, m."""
-        return 0.5 * self.arm.robot.rigid_link.diameter
 
-    @property
-    def rod_length(self) -> float:
-        """Distance from the link's end to P5, m."""
-        offset, radius = self.arm.robot.end_effector_circle(self.arm.d35, self.arm.d45)
-        return math.hypot(offset, radius)
+def clear_of_tube(
+    body: ArmBody, start: FloatArray, end: FloatArray | None = None, *, enough: float = _SELF_CEILING
+) -> FloatArray:
+    """Return how far the rod keeps from the tube at angles of joint 2, or on ways between them.
 
-    def tube(self, along: FloatArray) -> FloatArray:
-        """Return points of the tube's centreline at joint 1 = 0, shape (..., 3), m.
+    Args:
+        body: The arm.
+        start: The angles, shape (n,), rad.
+        end: Angles at which the ways end, shape (n,), rad.
+        enough: As for `clear_of_obstacles`.
 
-        Args:
-            along: Distance along it from P2, shape (...), m: negative down to P1, then the link.
-        """
-        points = self.arm.shape.point_at(np.maximum(along, 0.0)) + self.arm.base_joint[1]
-        points[..., 2] += np.minimum(along, 0.0)
-        return np.asarray(points)
+    Returns:
+        Lower bounds of the distance between the surfaces, at most `enough`, negative where they
+        overlap; shape (n,). On a way that is not clear, minus infinity.
+    """
+    joint = body.arm.robot.link.diameter
+    last = body.arm.shape.length - joint
+    if joint == 0.0 or last <= 0.0 or body.rod_length <= joint:
+        return np.full(len(start), enough)
+    ways = _Ways(start[:, None], None if end is None else end[:, None])
 
-    def rod(self, along: FloatArray, theta2: FloatArray) -> FloatArray:
-        """Return points of the rod's centreline at joint 1 = 0, shape (..., 3), m.
+    def distance(which: NDArray[np.intp], at: FloatArray) -> FloatArray:
+        rod = body.rod(at[:, 1], ways.joints(which, at[:, 2])[:, 0])
+        return np.asarray(np.linalg.norm(body.tube(at[:, 0]) - rod, axis=1))
 
-        Args:
-            along: Distance from the link's end, shape (...), m.
-            theta2: Angle of joint 2, shape (...), rad.
-        """
-        end = self.arm.end_frame[1]
-        tip = self.arm.kinematics.forward(0.0, theta2)
-        share = along / self.rod_length if self.rod_length > 0.0 else np.zeros_like(along)
-        return np.asarray(end + share[..., None] * (tip - end))  # a rod of no length is its own end
+    sides: list[_Side] = [
+        (-body.arm.robot.d12, last, 1.0),
+        (joint, body.rod_length, 1.0),
+        (0.0, ways.share, ways.travel[:, 0] * body.rod_length),
+    ]
+    return _least(body.tolerance, distance, sides, body.tube_radius + body.rod_radius, enough, ways.floor)
 
-    def lowest(self) -> float:
-        """Return the height of the lowest point of the tube beyond its mount, m; exact."""
-        shape = self.arm.shape
-        return (
-            self.arm.robot.d12 + shape.lowest(beyond=min(self.tube_radius, shape.length)) - self.tube_radius
-        )
 
-    def from_obstacles(
-        self,
-        start: FloatArray,
-        solids: Sequence[Solid],
-        *,
-        end: FloatArray | None = None,
-        enough: float = MOST_CLEARANCE,
-    ) -> FloatArray:
-        """Return how far tube and rod keep from solids at joint angles, or on straight ways between them.
+def tube_clear_of_itself(body: ArmBody) -> float:
+    """Return how far the tube keeps from itself: a lower bound, at most 0.02 m, negative inside."""
+    column, link = body.arm.robot.d12, body.arm.shape.length
+    apart = math.pi * body.arm.robot.link.min_bend_radius
+    room = column + link - apart
+    if room <= 0.0 or body.tube_radius == 0.0:
+        return _SELF_CEILING
 
-        On the way a point moves by no more than |d theta1| times its distance from axis 1, plus, on the
-        rod, |d theta2| times its distance from axis 2.
+    def distance(_: NDArray[np.intp], at: FloatArray) -> FloatArray:
+        # The second coordinate counts from the nearest piece that is not a neighbour.
+        other = np.minimum(at[:, 0] + apart + at[:, 1], link)
+        return np.asarray(np.linalg.norm(body.tube(at[:, 0]) - body.tube(other), axis=1))
 
-        Args:
-            start: Angles (theta1, theta2), shape (n, 2), rad.
-            solids: Solids in the base frame.
-            end: Angles at which the ways end, both joints moving evenly, shape (n, 2), rad.
-            enough: Clearance, m, beyond which nobody asks how much it is: the less, the faster.
+    sides: list[_Side] = [(-column, room - column, np.full(1, 2.0)), (0.0, room, 1.0)]
+    return float(_least(body.tolerance, distance, sides, 2.0 * body.tube_radius, _SELF_CEILING, -math.inf)[0])
 
-        Returns:
-            Lower bounds of the distance between the surfaces, at most `enough`, negative inside; shape
-            (n, len(solids), 2), the tube first. On a way that is not clear, minus infinity.
-        """
-        ways, count = _Ways(start, end), len(solids)
-        if count == 0:
-            return np.empty((len(start), 0, 2))
-        way, solid = np.repeat(np.arange(len(start)), count), np.tile(np.arange(count), len(start))
-        link, rod = self.arm.shape.length, self.rod_length
-        turn, second = ways.travel.T[:, way]
 
-        def distance(which: NDArray[np.intp], points: FloatArray, joints: FloatArray) -> FloatArray:
-            there, values = turned(points, joints[:, 0]), np.empty(len(which))
-            for index, each in enumerate(solids):
-                mine = solid[which] == index
-                values[mine] = each.distance(there[mine])
-            return values
-
-        def from_tube(which: NDArray[np.intp], at: FloatArray) -> FloatArray:
-            return distance(which, self.tube(at[:, 0]), ways.joints(way[which], at[:, 1]))
-
-        def from_rod(which: NDArray[np.intp], at: FloatArray) -> FloatArray:
-            joints = ways.joints(way[which], at[:, 1])
-            return distance(which, self.rod(at[:, 0], joints[:, 1]), joints)
-
-        bounds = []
-        for values, first, last, radius, rate in (
-            (from_tube, min(self.tube_radius, link), link, self.tube_radius, turn * link),
-            (from_rod, 0.0, rod, self.rod_radius, turn * (link + rod) + second * rod),
-        ):
-            sides: list[_Side] = [(first, last, 1.0), (0.0, ways.share, rate)]
-            bounds.append(self._least(values, sides, radius, enough, ways.floor))
-        return np.stack(bounds, axis=-1).reshape(len(start), count, 2)
-
-    def rod_from_tube(
-        self, start: FloatArray, end: FloatArray | None = None, *, enough: float = _SELF_CEILING
-    ) -> FloatArray:
-        """Return how far the rod keeps from the tube at angles of joint 2, or on ways between them.
-
-        Args:
-            start: The angles, shape (n,), rad.
-            end: Angles at which the ways end, shape (n,), rad.
-            enough: As for `from_obstacles`.
-
-        Returns:
-            Lower bounds of the distance between the surfaces, at most `enough`, negative where they
-            overlap; shape (n,). On a way that is not clear, minus infinity.
-        """
-        joint = self.arm.robot.link.diameter
-        last = self.arm.shape.length - joint
-        if joint == 0.0 or last <= 0.0 or self.rod_length <= joint:
-            return np.full(len(start), enough)
-        ways = _Ways(start[:, None], None if end is None else end[:, None])
-
-        def distance(which: NDArray[np.intp], at: FloatArray) -> FloatArray:
-            rod = self.rod(at[:, 1], ways.joints(which, at[:, 2])[:, 0])
-            return np.asarray(np.linalg.norm(self.tube(at[:, 0]) - rod, axis=1))
-
-        sides: list[_Side] = [
-            (-self.arm.robot.d12, last, 1.0),
-            (joint, self.rod_length, 1.0),
-            (0.0, ways.share, ways.travel[:, 0] * self.rod_length),
-        ]
-        return self._least(distance, sides, self.tube_radius + self.rod_radius, enough, ways.floor)
-
-    def tube_from_itself(self) -> float:
-        """Return how far the tube keeps from itself: a lower bound, at most 0.02 m, negative inside."""
-        column, link = self.arm.robot.d12, self.arm.shape.length
-        apart = math.pi * self.arm.robot.link.min_bend_radius
-        room = column + link - apart
-        if room <= 0.0 or self.tube_radius == 0.0:
-            return _SELF_CEILING
-
-        def distance(_: NDArray[np.intp], at: FloatArray) -> FloatArray:
-            # The second coordinate counts from the nearest piece that is not a neighbour.
-            other = np.minimum(at[:, 0] + apart + at[:, 1], link)
-            return np.asarray(np.linalg.norm(self.tube(at[:, 0]) - self.tube(other), axis=1))
-
-        sides: list[_Side] = [(-column, room - column, np.full(1, 2.0)), (0.0, room, 1.0)]
-        return float(self._least(distance, sides, 2.0 * self.tube_radius, _SELF_CEILING, -math.inf)[0])
-
-    def _least(
-        self,
-        distance: Callable[[NDArray[np.intp], FloatArray], FloatArray],
-        sides: Sequence[_Side],
-        radii: float,
-        ceiling: float,
-        floor: float,
-    ) -> FloatArray:
-        """Return lower bounds of distances less radii, for sides that each go from, to, and at a rate."""
-        count = np.broadcast_shapes(*(np.shape(rate) for *_, rate in sides))[0]
-        lower, upper, rates = (
-            np.stack([np.broadcast_to(side[k], count) for side in sides], axis=-1) for k in range(3)
-        )
-        least, _ = least_values(distance, lower, upper, rates, self.tolerance, radii + ceiling, radii + floor)
-        return least - radii
+def _least(
+    tolerance: float,
+    distance: Callable[[NDArray[np.intp], FloatArray], FloatArray],
+    sides: Sequence[_Side],
+    radii: float,
+    ceiling: float,
+    floor: float,
+) -> FloatArray:
+    """Return lower bounds of distances less radii, for sides that each go from, to, and at a rate."""
+    count = np.broadcast_shapes(*(np.shape(rate) for *_, rate in sides))[0]
+    lower, upper, rates = (
+        np.stack([np.broadcast_to(side[k], count) for side in sides], axis=-1) for k in range(3)
+    )
+    least, _ = least_values(distance, lower, upper, rates, tolerance, radii + ceiling, radii + floor)
+    return least - radii
 
 
 class _Ways:
@@ -233,7 +168,7 @@ class _Ways:
         self._start, self._change = start, np.zeros_like(start) if end is None else end - start
         self.travel = np.abs(self._change)
         self.share = 0.0 if end is None else 1.0  # of the way that there is
-        self.floor = -math.inf if end is None else -_ROUNDING  # how deep in something need not be known
+        self.floor = -math.inf if end is None else -ROUNDING  # how deep in something need not be known
 
     def joints(self, way: NDArray[np.intp], share: FloatArray) -> FloatArray:
         """Return the angles at a share of ways, both of shape (K,); shape (K, k), rad."""

@@ -12,6 +12,10 @@ cannot hold the minimum. What is left, mostly one valley, is searched for the ro
     d(F^2)/d(theta2) / 2 = (q - Rz(-theta1) p) . q',
 
 q being P5 at theta1 = 0 and theta1 at its best (the envelope theorem: its own change adds nothing).
+
+The secants are our own: `scipy.optimize.elementwise.find_root` gives the same misses to 4e-16 m, in 1.5
+times the time for 50 points and 0.9 times for 20 000, but to import `scipy.optimize` takes 0.7 s, a good part
+of what an easy task takes in all.
 """
 
 from __future__ import annotations
@@ -31,8 +35,9 @@ if TYPE_CHECKING:
 
 # Over joint 2 the miss has few valleys, as it has few harmonics; a full turn's grid has a spacing of 2 deg.
 _GRID = 181
-# A valley may hold several where P5 passes axis 1 closely: it is looked at again eight times as finely.
-_ZOOMS, _FINER = 3, 17
+# A valley may hold several where P5 passes axis 1 closely: it is looked at again, twice.
+_ZOOMS = 3
+_FINER = 17  # points between the neighbours of a grid point: eight times as finely
 # Steps of the bracketed secant method: rounding is reached after about six, twelve at a kink.
 _SECANTS = 12
 _CHUNK = 4096  # points looked at together: their grid stays in the processor's cache

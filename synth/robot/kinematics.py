@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.robot.hardware import into_turn, turned
 
 if TYPE_CHECKING:
@@ -19,8 +18,7 @@ if TYPE_CHECKING:
 _NEWTON_STEPS = 6
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Kinematics:
     """The two joints of shapes whose arrays broadcast: leading axes "..." may be absent.
 

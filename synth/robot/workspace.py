@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.geometry import critical_angles, sampling_angles
 from synth.robot.hardware import Interval, JointLimits, into_turn
 
@@ -26,8 +25,7 @@ _GAUSS = np.polynomial.legendre.leggauss(16)
 _COARSEST = 1.0  # rad; seven cells a turn still close up
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class SurfaceMesh:
     """Triangles on a workspace surface.
 
@@ -56,8 +54,7 @@ class SurfaceMesh:
         return np.asarray(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=-1))
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Workspace:
     """The surface that P5 sweeps within joint limits. Points are in the task frame, in metres.
 
@@ -172,9 +169,7 @@ class Workspace:
         theta1, allowed1 = _cells(self.limits.base, spacing)
         theta2, allowed2 = _cells(self.limits.second, spacing)
         points = self.arm.kinematics.forward(theta1[:, None], theta2).reshape(-1, 3)
-        index = np.arange(len(points)).reshape(len(theta1), len(theta2))
-        across, along, both = (np.roll(index, shift, axis=(0, 1)) for shift in ((-1, 0), (0, -1), (-1, -1)))
-        faces = np.stack([index, across, both, index, both, along], axis=-1).reshape(-1, 3)
+        faces = _faces_of_torus(len(theta1), len(theta2))
         reachable = np.repeat(np.logical_and.outer(allowed1, allowed2), 2)
         if floor is not None:
             reachable &= np.all(points[faces, 2] >= floor - 1e-9, axis=-1)
@@ -223,6 +218,13 @@ def _one_turn(interval: Interval) -> Interval:
 def _within(interval: Interval, angles: FloatArray) -> FloatArray:
     """Return angles, modulo a turn, brought to the nearer end of an interval if they are not in it."""
     return np.clip(into_turn(angles, interval.middle), interval.lower, interval.upper)
+
+
+def _faces_of_torus(first: int, second: int) -> NDArray[np.int64]:
+    """Return the triangles of a grid that closes up both ways, two of each cell: indices, shape (m, 3)."""
+    index = np.arange(first * second).reshape(first, second)
+    across, along, both = (np.roll(index, shift, axis=(0, 1)) for shift in ((-1, 0), (0, -1), (-1, -1)))
+    return np.stack([index, across, both, index, both, along], axis=-1).reshape(-1, 3)
 
 
 def _cells(interval: Interval, spacing: float) -> tuple[FloatArray, NDArray[np.bool_]]:

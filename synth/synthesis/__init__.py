@@ -3,28 +3,33 @@
 from synth.synthesis.blocking import explain
 from synth.synthesis.bound import Bound
 from synth.synthesis.check import TargetResult, Verification, Violation, target_results, verify, worst_targets
-from synth.synthesis.message import ending, showing
-from synth.synthesis.solution import NotFoundError, Release, Solution, Status
+from synth.synthesis.solution import (
+    NotFoundError,
+    Release,
+    Solution,
+    Status,
+    clearance_told,
+    ending,
+    help_told,
+    proof_sentence,
+    reasons_told,
+    shape_line,
+    showing,
+)
 from synth.synthesis.solve import solve
 from synth.synthesis.wanted import (
-    HAND_PLACES,
-    HAND_TURNS,
-    MOST_MOTIONS,
     Design,
     Displacements,
     Forgiveness,
     Motion,
-    hand_forgiveness,
     misses_displaced,
     motions,
     rotations,
+    ways_and_forgiveness,
 )
 from synth.watch import Progress, Timing
 
 __all__ = [
-    "HAND_PLACES",
-    "HAND_TURNS",
-    "MOST_MOTIONS",
     "Bound",
     "Design",
     "Displacements",
@@ -39,15 +44,20 @@ __all__ = [
     "Timing",
     "Verification",
     "Violation",
+    "clearance_told",
     "ending",
     "explain",
-    "hand_forgiveness",
+    "help_told",
     "misses_displaced",
     "motions",
+    "proof_sentence",
+    "reasons_told",
     "rotations",
+    "shape_line",
     "showing",
     "solve",
     "target_results",
     "verify",
+    "ways_and_forgiveness",
     "worst_targets",
 ]

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 # Targets of all shapes together that are looked at where the search knew only a part of them.
 _VERIFIED_AT_MOST = 20_000
-# So many are verified first, to see how long one takes; then others in this part of the time left.
-_FIRST, _OF_TIME_LEFT = 2_000, 0.8
+_FIRST = 2_000  # of them are verified first, to see how long one takes
+_OF_TIME_LEFT = 0.8  # in which others are
 
 
 @dataclass

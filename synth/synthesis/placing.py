@@ -106,7 +106,7 @@ def _started(task: Task, start: Start, seed: int, watch: Watch) -> Run:
     """Return a run where a start point stands, which is polished."""
     run = _run_at(task, start.arm.base, seed, watch)
     with run.kept(), watch.keeping_back(run.kept_back):
-        run.search.begin(start)
+        run.search.polish(start)
     return run
 
 

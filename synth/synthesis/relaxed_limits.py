@@ -95,7 +95,7 @@ def limits_of(task: Task) -> Iterator[Limit]:
         yield Limit(
             f"obstacle: {obstacle.name}", high, most,
             lambda less, index=index: _with_less_of(task, index, less),  # type: ignore[misc]
-            lambda less, name=obstacle.name: f"{name} {rounded_up(less)} mm smaller all round",  # type: ignore[misc]
+            lambda less, name=obstacle.name: f"{name} {rounded_up(less)} mm smaller all around",  # type: ignore[misc]
         )  # fmt: skip
 
 
@@ -105,7 +105,7 @@ def _deepest(solid: Solid) -> float:
 
 
 def _with_less_of(task: Task, index: int, less: float) -> Task:
-    """Return the task with an obstacle shrunk all round; one that has shrunk to nothing is gone."""
+    """Return the task with an obstacle shrunk all around; one that has shrunk to nothing is gone."""
     obstacle = task.obstacles[index]
     solid, kept = obstacle.solid, list(task.obstacles)
     if less >= -_deepest(solid):

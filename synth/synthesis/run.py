@@ -14,15 +14,14 @@ import numpy as np
 from synth.errors import in_a_line
 from synth.synthesis.all_targets import WholeTask, for_all_targets, verified_in_time
 from synth.synthesis.bound import why_impossible
-from synth.synthesis.message import message, why_no_better
 from synth.synthesis.present_shape import changing_little
 from synth.synthesis.proving import Certifier
 from synth.synthesis.search import ALTERNATIVES, Search
-from synth.synthesis.solution import Solution, Status
+from synth.synthesis.solution import Solution, Status, message, note_on_ways, why_no_better
 from synth.synthesis.wanted import Design, best_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from synth.robot import BasePlaces
     from synth.synthesis.bound import Bound
@@ -31,8 +30,8 @@ if TYPE_CHECKING:
 
 _PROOF_TIME = 60.0  # s
 _PROVEN_IN_TIME = 50_000  # targets: whether each of more is within reach takes a second or longer
-# So many targets are looked at in the time of the search for a part of them; of all the time it is left some.
-_AS_LONG, _LEAST_SEARCH = 30_000, 0.2
+_AS_LONG = 30_000  # targets that are looked at in the time of the search for a part of them
+_LEAST_SEARCH = 0.2  # of all the time, which is left to the search however many there are
 
 
 @dataclass
@@ -136,36 +135,32 @@ class Run:
                     seen, design = verified_in_time(self.task, one.arm, self.watch)
                     whole = WholeTask(seen, (design,) if design.verification.possible else ())
         task, designs = whole.task, whole.designs
-        status: Status = Status.FAILED
-        reasons: tuple[str, ...] = ()
-        with self.kept():
-            status, reasons = self._verdict(whole)
+        status, reasons = self._ended(whole)
         words = status.sentence
         with self.kept():
-            words = message(task, status, designs, (*self._why_broken(), *reasons))
+            words = message(task, status, designs, reasons)
+        no_time = note_on_ways(designs, interrupted=self.watch.interrupted)
         return Solution(
             replace(task, places=self.places),
             status,
             words,
-            (*self._why_broken(), *reasons),
+            reasons,
             self.seed,
             designs,
             self.search.starts,
             self.watch.timing(),
             self._bound_for(designs),
-            notes=(*self.notes, *filter(None, [whole.note, self._ways_note(designs)])),
+            notes=(*self.notes, *filter(None, [whole.note, no_time])),
             breakdown="".join(traceback.format_exception(self.broke_off)) if self.broke_off else "",
         )
 
-    def _ways_note(self, designs: Sequence[Design]) -> str:
-        """Return that ways may be missing for lack of time alone; nothing if none is missing."""
-        missing = designs and any(not way.found for way in designs[0].ways)
-        if not (missing and self.watch.interrupted):
-            return ""
-        return "the time was up before all ways from target to target had been looked for"
-
-    def _why_broken(self) -> tuple[str, ...]:
-        return () if self.broke_off is None else (f"the search broke off: {in_a_line(self.broke_off)}",)
+    def _ended(self, whole: WholeTask) -> tuple[Status, tuple[str, ...]]:
+        status, reasons = Status.FAILED, tuple[str, ...]()
+        with self.kept():
+            status, reasons = self._verdict(whole)
+        if self.broke_off is None:
+            return status, reasons
+        return status, (f"the search broke off: {in_a_line(self.broke_off)}", *reasons)
 
     def _whole(self, designs: tuple[Design, ...]) -> WholeTask:
         """Return designs for a part of the targets as designs for all."""

@@ -67,10 +67,6 @@ class Search:
                 break
         return self.polishing.found
 
-    def begin(self, start: Start) -> None:
-        """Polish one start point."""
-        self._polish(start)
-
     def look_beside(self, alternatives: int) -> None:
         """Where a shape reaches every target, look for others that a person would rather have."""
         self._alternatives = alternatives
@@ -95,14 +91,15 @@ class Search:
                 no_better += 1
                 if no_better > min(_ALTERNATIVES_THAT_MISS, self._alternatives):
                     continue
-            self._polish(start)
-            self._report(at_most)
+            self.polish(start)
+            self._watch.tell(**_progress(self.polishing, self.starts, at_most))
             if self._since_found == 1 and self._alternatives and self._wished_for():
                 return
             if self.starts >= at_most or self._since_found > self._alternatives:
                 return
 
-    def _polish(self, start: Start) -> None:
+    def polish(self, start: Start) -> None:
+        """Polish one start point; where that leads astray, again with shorter steps or by squares."""
         if self._promises_all(start):
             self.polishing.keep(start.arm, start.joints)
         self.polishing.polish(start)
@@ -174,14 +171,14 @@ class Search:
                 return
             yield start
 
-    def _report(self, at_most: int) -> None:
-        worst = min(
-            (float(design.verification.misses.max()) for design in self.polishing.designs), default=math.inf
-        )
-        self._watch.tell(
-            starts=self.starts,
-            starts_at_most=at_most,
-            worst_miss=worst,
-            found=self.polishing.found,
-            phase="polishing shapes",
-        )
+
+def _progress(polishing: Polishing, starts: int, at_most: int) -> dict[str, object]:
+    """Return what is told of the search after each start point."""
+    misses = (float(design.verification.misses.max()) for design in polishing.designs)
+    return {
+        "starts": starts,
+        "starts_at_most": at_most,
+        "worst_miss": min(misses, default=math.inf),
+        "found": polishing.found,
+        "phase": "polishing shapes",
+    }

@@ -45,7 +45,7 @@ def solve(
             would want, which see `ranking`; where there are none, so many other start points are polished.
             Where no shape reaches every target, at most two are polished that promise nothing better than the
             best. 0 gives the first shape, in half the time, wherever it leans.
-        prove: Whether to bound how little any shape can miss; that takes seconds, a minute at most.
+        prove: Whether to bound how little any shape can miss; that takes seconds, or about a minute.
         time_limit: Time after which the best shape so far is returned, s.
         stop: Polled many times a second; return True to stop with the best shape so far.
         progress: Told of each step: of the search for start points, of each one polished, of the proof.

@@ -14,7 +14,7 @@ from synth.task.entry_types import (
 from synth.task.hardware_distances import off_the_hardware
 from synth.task.model import Floor, Objective, Obstacle, Task, Topology
 from synth.task.reading import as_path, as_task, load_robot, load_task, named_robot, parse_task, robot_within
-from synth.task.robot_schema import RobotEntry
+from synth.task.robot_schema import FileOfARobot, RobotEntry
 from synth.task.schema import task_schema
 from synth.task.sizes import PER_METRE
 from synth.task.solution_file import load_shapes
@@ -28,6 +28,7 @@ __all__ = [
     "PER_METRE",
     "TEXT",
     "Approach",
+    "FileOfARobot",
     "Floor",
     "LengthUnit",
     "Name",

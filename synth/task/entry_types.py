@@ -17,7 +17,11 @@ from pydantic import (
 from synth.checks import wrong_name
 from synth.rounding import written_apart
 
-ONE, RANGE, TEXT, MAPPING = "<one>", "<range>", "<text>", "<mapping>"  # tags of unions, never keys
+# Tags of unions, never keys.
+ONE = "<one>"
+RANGE = "<range>"
+TEXT = "<text>"
+MAPPING = "<mapping>"
 SURFACES_TO_COME = ("sphere", "plane", "torus", "mesh")
 SMALLEST = 1e-9
 LARGEST = 1e6

@@ -9,7 +9,8 @@ if TYPE_CHECKING:
 
     from synth.robot import Robot
 
-_MOUNTING, _SCALE = 3e-3, 0.01  # m, and of the distance
+_MOUNTING = 3e-3  # m
+_SCALE = 0.01  # of the distance
 
 
 def off_the_hardware(measured: Mapping[str, float], robot: Robot, error: float = 0.0) -> dict[str, str]:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.checks import Checks, described, wrong_type
 from synth.geometry import Box, Capsule, Sphere
 from synth.names import given_twice
@@ -47,8 +47,7 @@ class Objective(Enum):
     MINIMAX = "minimax"
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Obstacle:
     """A solid that link, rigid link and end effector keep clear of.
 
@@ -67,15 +66,14 @@ class Obstacle:
         checks.refuse()
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Task:
     """A synthesis task: reach the targets with one shape of the link.
 
     Attributes:
         name: What the task is called.
         robot: The hardware.
-        targets: What shall be reached.
+        targets: What is to be reached.
         base: Where the robot stands; where the synthesis chooses it, the middle of the places or the first.
         floor: Height in the task frame, m, that link, joint and end effector stay above; None where there is
             none. By default that of P1 where the base is upright, and none where it leans.

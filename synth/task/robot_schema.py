@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from pydantic import (
-    Field,
-    ValidationInfo,
-    field_validator,
-)
+from typing import Annotated
+
+from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator
 
 from synth.robot import no_triangle
 from synth.task.entry_types import (
+    MAPPING,
+    TEXT,
     AngleRange,
     Coordinate,
     LengthUnit,
@@ -77,3 +77,15 @@ class RobotFile(RobotEntry):
     """A robot file."""
 
     length_unit: LengthUnit = Field(description="unit of all lengths in this file: mm, cm or m")
+
+
+class FileOfARobot(Strict):
+    """What every file begins with that tells of a robot."""
+
+    synth: Annotated[int, Field(ge=1, le=1)] = Field(description="version of this format: 1")
+    name: Name = Field(default_factory=absent, description="what it is called")
+    length_unit: LengthUnit = Field(description="unit of all lengths in this file: mm, cm or m")
+    robot: Annotated[
+        Annotated[str, Tag(TEXT)] | Annotated[RobotEntry, Tag(MAPPING)],
+        Discriminator(lambda value: {str: TEXT, dict: MAPPING}.get(type(value))),
+    ] = Field(description="a preset's name, the path of a robot file, or a mapping")

@@ -9,19 +9,14 @@ from typing import Annotated, Any
 
 from pydantic import (
     BeforeValidator,
-    Discriminator,
     Field,
-    Tag,
     model_validator,
 )
 
 from synth.task.base_schema import BaseEntry
 from synth.task.entry_types import (
-    MAPPING,
-    TEXT,
     Angle,
     Coordinate,
-    LengthUnit,
     Name,
     Position,
     Positive,
@@ -30,7 +25,7 @@ from synth.task.entry_types import (
     without_case,
 )
 from synth.task.model import Floor, Objective, Topology
-from synth.task.robot_schema import RobotEntry  # noqa: TC001 - pydantic reads the annotation
+from synth.task.robot_schema import FileOfARobot
 
 
 def _at_base() -> Any:
@@ -141,7 +136,7 @@ class CurrentEntry(Strict):
 
 
 class SurfaceEntry(Strict):
-    """A surface that the workspace shall pass through."""
+    """A surface that the workspace must pass through."""
 
     points: Annotated[str, Field(min_length=1)] = Field(
         default_factory=absent, description="path of a CSV file of points x,y,z in the task frame"
@@ -151,16 +146,10 @@ class SurfaceEntry(Strict):
     )
 
 
-class TaskFile(Strict):
+class TaskFile(FileOfARobot):
     """A task file."""
 
-    synth: Annotated[int, Field(ge=1, le=1)] = Field(description="version of this format: 1")
     name: Name = Field(default_factory=absent, description="what the task is called")
-    length_unit: LengthUnit = Field(description="unit of all lengths in this file: mm, cm or m")
-    robot: Annotated[
-        Annotated[str, Tag(TEXT)] | Annotated[RobotEntry, Tag(MAPPING)],
-        Discriminator(lambda value: {str: TEXT, dict: MAPPING}.get(type(value))),
-    ] = Field(description="a preset's name, the path of a robot file, or a mapping")
     base: BaseEntry = Field(default_factory=BaseEntry, description="where the robot stands in the task frame")
     floor: Coordinate | None = Field(
         default_factory=_at_base,
@@ -176,7 +165,7 @@ class TaskFile(Strict):
     surface: SurfaceEntry = Field(default_factory=absent, description="a surface, given by points of it")
     obstacles: list[ObstacleEntry] = Field(default=[], description="solids to keep clear of")
     current: CurrentEntry = Field(
-        default_factory=absent, description="the present shape of the link, which shall change little"
+        default_factory=absent, description="the present shape of the link, which is to change little"
     )
 
 

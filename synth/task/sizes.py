@@ -30,8 +30,10 @@ if TYPE_CHECKING:
 
 PER_METRE = {"mm": 1000.0, "cm": 100.0, "m": 1.0}  # to divide by: 455 / 1000 is 0.455 exactly
 _TOLD_IN_METRES = 100.0  # m, a length from which on millimetres help nobody
-_NEAR, _FAR = 0.01, 20.0  # of the reach
-_SHORT, _LONG = 0.05, 1000.0  # of the longer of d12 and d34
+_NEAR = 0.01  # of the reach: targets that are all nearer are in another unit
+_FAR = 20.0  # of the reach, likewise targets that are all farther
+_SHORT = 0.05  # of the longer of d12 and d34, likewise a shorter link
+_LONG = 1000.0  # of that, likewise a longer one
 _MEANT = (0.1, 1.5)  # of the reach: where the farthest target is in a unit that may be meant
 
 

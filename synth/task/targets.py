@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.checks import LONGEST_NAME, SMALLEST, Checks, described, wrong_name
 from synth.names import given_twice
 
@@ -22,8 +21,7 @@ DEFAULT_APPROACH_TOLERANCE = math.radians(5.0)
 DEFAULT_TOLERANCE = 1e-3  # m: twice the error of the motion capture that measured the prototype
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Approach:
     """The direction in which the rigid link points as it arrives at a target, from axis 2 to P5.
 
@@ -47,8 +45,7 @@ class Approach:
         checks.refuse()
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class PointTarget:
     """A point that the end effector must reach: one kind of target.
 
@@ -82,8 +79,7 @@ class _CheckedNames(tuple[str, ...]):
     __slots__ = ()
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class TargetTable(Sequence[PointTarget]):
     """Targets in columns: as a sequence it is one of `PointTarget`, made when asked for.
 

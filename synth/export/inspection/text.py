@@ -9,6 +9,7 @@ import numpy as np
 
 from synth.measurement import Fit
 from synth.rounding import rounded_down, rounded_up
+from synth.sentences import bulleted, headed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -51,7 +52,7 @@ def inspection_text(inspection: Inspection) -> str:
     bullets.append(_link_sentence(inspection))
     count = 0 if inspection.samples is None else len(inspection.samples)
     bullets.append(f"seed {inspection.seed}, {count} shapes drawn; ranges are from 5 % to 95 % of them")
-    return "\n".join([headline, "=" * min(len(headline), 79), *(f"• {bullet}" for bullet in bullets)])
+    return headed(headline, map(bulleted, bullets))
 
 
 def inspections_markdown(inspections: Sequence[Inspection]) -> str:

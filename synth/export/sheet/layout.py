@@ -9,8 +9,8 @@ import numpy as np
 
 from synth.export.sheet.labels import FONT_SIZE
 from synth.export.sheet.page import HEIGHT, MARGIN, WIDTH
-from synth.export.sheet.scene import FRONT, SIDE, TOP, draw_section, draw_view, section
 from synth.export.sheet.typesetting import shortened
+from synth.export.sheet.views import FRONT, SIDE, TOP, draw_section, draw_view, section
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 # Millimetres of paper.
 _NAME = 35.0  # of an obstacle in the legend
 _ROOM_FOR_A_NOTE = 50.0  # beside the title of the section
-_TICKS, _GAP_X, _GAP_Y = 10.0, 15.0, 13.0  # room for the numbers on the axes
+_TICKS = 10.0  # room for the numbers on an axis
+_GAP_X = 15.0  # between views side by side: numbers and the name of an axis
+_GAP_Y = 13.0  # likewise of views one above the other
 _LEAST_VIEW = 0.42  # of the room in height, for a side of the square in the corner
 _SCALES = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.5, 10.0)
 

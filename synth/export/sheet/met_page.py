@@ -20,9 +20,11 @@ if TYPE_CHECKING:
 # Millimetres on the page.
 _BODY = 44.0  # where the tables begin
 _COLUMN = 90.0  # where the right column begins
-_POINTS_HEIGHT, _POINT_PITCH = 62.0, 4.2
+_POINTS_HEIGHT = 62.0  # of the table of points, at most
+_POINT_PITCH = 4.2  # from one of its lines to the next, at most
 _MOST_POINTS = 19
-_WAYS, _WAYS_SIZE = 128.0, 6.5  # where the ways begin, right of the targets; pt
+_WAYS = 128.0  # where the ways begin, right of the targets
+_WAYS_SIZE = 6.5  # pt
 _MOST_WAYS = 6
 _NAME = 25.0  # of a target
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from synth.export.sheet.page import MARGIN, WIDTH
 from synth.export.sheet.target_table import target_table
 from synth.export.sheet.typesetting import width
-from synth.guide import help_told, proof_sentence, reasons_told
-from synth.synthesis import Status
+from synth.sentences import BULLET
+from synth.synthesis import Status, help_told, proof_sentence, reasons_told
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,11 +18,13 @@ if TYPE_CHECKING:
     from synth.synthesis import Solution
 
 # Millimetres on the page.
-_BANNER, _BODY = 21.0, 37.0
+_BANNER = 21.0  # where the word begins that nobody may miss
+_BODY = 37.0  # where the reasons begin
 _BANNER_SIZE = 12.0  # pt, at most
 _PITCH = 3.6
 _MOST_LINES = 3  # of one reason
-_MOST_REASONS, _MOST_RELEASES = 5, 5
+_MOST_REASONS = 5  # as on the terminal
+_MOST_RELEASES = 5
 
 
 def fill_missed(page: Page, solution: Solution) -> float:
@@ -64,7 +66,7 @@ def _list(page: Page, y: float, heading: str, lines: Sequence[str]) -> float:
     page.text(MARGIN, y, heading, 9.5, weight="bold")
     y += 4.6
     for line in lines:
-        page.text(MARGIN, y, "•", 7.0)
+        page.text(MARGIN, y, BULLET, 7.0)
         y = (
             page.paragraph(
                 MARGIN + 3.0, y, line, WIDTH - 2 * MARGIN - 3.0, most=_MOST_LINES, pitch=_PITCH, size=7.0

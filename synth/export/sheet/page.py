@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
 
-WIDTH, HEIGHT, MARGIN = 210.0, 297.0, 13.0  # A4
+WIDTH = 210.0  # mm, of A4
+HEIGHT = 297.0
+MARGIN = 13.0  # on all sides
 _LINE = 3.9  # from one line of a paragraph to the next
 _APART = (13.0, 10.0)  # at least, of the numbers along an axis: across, up
 _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)

@@ -38,7 +38,7 @@ def draw_sheet(solution: Solution, guide: Guide | None, file_format: str = "pdf"
     Returns:
         The file's content, the same for the same solution: it bears no date.
     """
-    # Half a second to import, which only who prints a sheet shall pay; no pyplot, so no global state.
+    # Half a second to import, paid only when a sheet is drawn; no pyplot, so no global state.
     import matplotlib as mpl  # noqa: PLC0415
     from matplotlib.figure import Figure  # noqa: PLC0415
 

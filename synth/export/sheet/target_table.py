@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.export.sheet.typesetting import shortened
-from synth.guide import clearance_told
 from synth.rounding import rounded_down, rounded_up
-from synth.synthesis import target_results, worst_targets
+from synth.synthesis import clearance_told, target_results, worst_targets
 from synth.task import DEFAULT_TOLERANCE
 
 if TYPE_CHECKING:

@@ -15,13 +15,12 @@ where f(0) = -P A and f(A) = -A^2 m^2 are not positive, so that two roots lie th
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, frozen_value
 
 BoolArray = NDArray[np.bool_]
 
@@ -93,8 +92,7 @@ class Ellipse(NamedTuple):
         return np.stack(np.broadcast_arrays(*values), axis=-1), real
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Conics:
     """All conics through the targets of each set in the plane of (z, N), as a linear space.
 

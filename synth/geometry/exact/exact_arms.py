@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.errors import GeometryError
 from synth.geometry.exact.conics import Conics
 from synth.geometry.exact.newton import folded, misses, polish, sorted_without_twins
@@ -23,8 +22,7 @@ if TYPE_CHECKING:
 TOLERANCE = 1e-9
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class ExactArms:
     """The designs through each of many target sets, as arrays.
 

@@ -8,12 +8,11 @@ here a parameter with its range.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, frozen_value
 from synth.errors import GeometryError
 from synth.geometry.exact.exact_arms import TOLERANCE
 from synth.geometry.invariants import Invariants
@@ -28,8 +27,7 @@ _LEVEL = 1e-9
 _ROUNDING = 1e-12
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class PlaneFamily:
     """All arms with parallel axes (SCARA) through targets in one plane across axis 1.
 
@@ -71,8 +69,7 @@ class PlaneFamily:
         return Invariants(a, 0.0, self.z, 0.0, radius)
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class SphereFamily:
     """All arms whose axes meet through targets on one sphere about a point of axis 1.
 
@@ -154,7 +151,7 @@ def spheres_through(
 
     Args:
         targets: Any number of them, shape (n, 3), m; of two heights at least, unless the centre is given.
-        centre: Height z0 where the axes shall meet (0: spherical, d12: PUMA-like), m; or any.
+        centre: Height z0 where the axes are to meet (0: spherical, d12: PUMA-like), m; or any.
         tolerance: Largest distance of a target from the sphere, m.
 
     Raises:

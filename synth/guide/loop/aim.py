@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.measurement import cross
+from synth.measurement import cross, joints_closest_to, joints_following, left_to_joints
 from synth.robot import turned
 
 if TYPE_CHECKING:
@@ -37,7 +37,8 @@ _SMALL = 1e-5  # m and rad, of the differences
 _ARRIVED = 1e-5  # m and rad
 _LEVER = 0.15  # m; a rotation by 1 rad is as hard for a hand as a shift by this
 _NEARLY_SINGULAR = 0.02  # m/rad; P5 that a joint moves more slowly than this counts as held there
-_MOST_DESIGNS, _TOO_FAR = 2, 0.15  # m; a shape farther away is no aim of a correction
+_MOST_DESIGNS = 2  # beside the present pose, near which an aim is looked for
+_TOO_FAR = 0.15  # m; a shape farther away is no aim of a correction
 _FARTHEST = np.repeat([0.05, 0.2], 3)  # m and rad, in one step
 
 
@@ -53,8 +54,8 @@ def _residuals(
 ) -> tuple[FloatArray, FloatArray]:
     """Return residuals of the cost, (k, r), m, and the joints, (k, n, 2), of displacements (k, 6)."""
     there = arm.moved(moves)
-    joints = there.following(joints, targets, steps)
-    miss, free, _ = there.left_to_joints(joints, targets)
+    joints = joints_following(there, joints, targets, steps)
+    miss, free, _ = left_to_joints(there, joints, targets)
     first, second = free[..., 0], free[..., 1]
     a = np.einsum("...i,...i", first, first) + _NEARLY_SINGULAR**2
     b = np.einsum("...i,...i", first, second)
@@ -174,6 +175,6 @@ def best_aims(
     for move in moves[:_MOST_DESIGNS]:
         if size(move) > _TOO_FAR:
             break
-        starts.append((move, arm.moved(move).closest(targets)))
+        starts.append((move, joints_closest_to(arm.moved(move), targets)))
     found = [aimed(arm, move, start, targets, weights, hand, share) for move, start in starts]
     return sorted(((cost, move, there) for move, there, cost in found), key=lambda aim: aim[0])

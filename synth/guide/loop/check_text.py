@@ -9,6 +9,7 @@ import numpy as np
 
 from synth.guide.loop.checking import Verdict
 from synth.rounding import Unit, rounded_down, rounded_up
+from synth.sentences import bulleted, headed
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
@@ -38,18 +39,30 @@ def check_text(
     """
     headline = f"{check.task.name}: {headline_sentence(check)}"
     bullets = [f"{name} is left out: {why}" for name, why in rejected]
-    if check.correction is not None:
-        bullets.append(correction_sentence(check.correction, check.fit))
-        bullets.append(
-            f"after that a practised hand has a largest miss of "
-            f"{_mm_up(check.correction.outlook.expected_worst)} mm on average; "
-            f"now it is {_mm_up(check.stiffened.expected_worst)} mm"
-        )
+    bullets += _what_to_do(check)
     bullets += _target_lines(check)
     bullets += axis_sentences(check.fit)
     if settings is not None:
         bullets += settings_sentences(settings)
-    return "\n".join([headline, "=" * min(len(headline), 79), *(f"• {bullet}" for bullet in bullets)])
+    return headed(headline, map(bulleted, bullets))
+
+
+def _what_to_do(check: Check) -> list[str]:
+    """Return the correction and what it brings; where joint 2 has no zero, what to show first, and why."""
+    fit, correction = check.fit, check.correction
+    brings = ""
+    if correction is not None:
+        brings = (
+            f"a practised hand has a largest miss of {_mm_up(correction.outlook.expected_worst)} mm on "
+            f"average; now it is {_mm_up(check.stiffened.expected_worst)} mm"
+        )
+    if not fit.shows_roll:
+        unshown = (
+            "the zero of joint 2 is not shown: P5 must be seen, or a marker such as E:-60; without it "
+            "nothing is locked"
+        )
+        return [f"{unshown}, and even after the best correction {brings}" if brings else unshown]
+    return [] if correction is None else [correction_sentence(correction, fit), f"after that {brings}"]
 
 
 def headline_sentence(check: Check) -> str:
@@ -115,11 +128,6 @@ def axis_sentences(fit: ArmFit) -> list[str]:
     )
     points = f"axis 2 points {abs(elevation):.1f} deg {side} horizontal, heading {heading:.1f} deg"
     sentences = [f"{points}; standard deviation {spread}"]
-    if not fit.shows_roll:
-        sentences.append(
-            "the zero of joint 2 is not shown: P5 must be seen, or a marker such as E:-60; without it "
-            "nothing is locked"
-        )
     if fit.direction_sigma > 0.003:
         sentences.append(
             "the direction of axis 2 decides: a bar with markers such as A2:-150 and A2:150 shows it "

@@ -5,17 +5,16 @@ Readings -> ArmFit -> Outlook -> Verdict, and the one correction that is worth m
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.guide.loop.aim import best_aims, size, towards
 from synth.guide.loop.hand import Hand
 from synth.guide.loop.outlook import Outlook, after_stiffening, outlook
 from synth.guide.loop.trying_on import value_of_trying
-from synth.measurement import onto_vertical
+from synth.measurement import joints_closest_to, joints_following, onto_vertical
 from synth.robot import link_to_pose
 from synth.sentences import SentenceEnum
 
@@ -41,8 +40,7 @@ class Verdict(SentenceEnum):
     UNUSABLE = "unusable", "the measurement does not show where the arm stands"
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Correction:
     """A displacement of the link's end, as a person carries it out.
 
@@ -70,8 +68,7 @@ class Correction:
             object.__setattr__(self, name, frozen(getattr(self, name)))
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Check:
     """What is to be said of a link as it stands.
 
@@ -110,8 +107,8 @@ def best_joints(arm: StandingArm, task: Task, planned: FloatArray) -> FloatArray
             obstacles
             and of the arm itself; so another branch is taken only where it is much better.
     """
-    near = arm.following(planned, task.positions_in_base)
-    closest = arm.closest(task.positions_in_base)
+    near = joints_following(arm, planned, task.positions_in_base)
+    closest = joints_closest_to(arm, task.positions_in_base)
     misses = [
         np.linalg.norm(arm.forward(joints) - task.positions_in_base, axis=-1) for joints in (near, closest)
     ]
@@ -185,7 +182,7 @@ def _correction(
     else:
         move = min((towards(fit.arm, arm) for arm in arms), key=size)
         aim = fit.arm.moved(move)
-        there, shape = aim.closest(targets), None
+        there, shape = joints_closest_to(aim, targets), None
     value, first = value_of_trying(fit, move, there, targets, task.tolerances, hand, corrections)
     return Correction(move[:3], move[3:], aim, shape, there, first, value)
 

@@ -5,13 +5,13 @@ Everything is by samples of the arms that the measurement leaves open; nothing i
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.guide.loop.hand import errors
+from synth.measurement import joints_following
 
 if TYPE_CHECKING:
     from synth.guide.loop.hand import Hand
@@ -22,8 +22,7 @@ _SAMPLES_AFTER = 1000  # joints are sought anew for each of these
 _STEPS = 4  # from joint angles a few degrees off
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Outlook:
     """Misses of the targets over N arms as they may be.
 
@@ -105,7 +104,7 @@ def after(
         seed: Of the errors.
     """
     measured = arms.displaced(fit.errors(len(arms.end), seed))
-    best = measured.following(joints, targets, _STEPS)
+    best = joints_following(measured, joints, targets, _STEPS)
     return Outlook(joints, np.linalg.norm(arms.forward(best) - targets, axis=-1), tolerances)
 
 

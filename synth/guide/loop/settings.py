@@ -7,13 +7,14 @@ sought by damped Gauss-Newton steps so that the targets' misses, joints at their
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.guide.loop.outlook import Outlook, outlook
+from synth.measurement import joints_following
 
 if TYPE_CHECKING:
     from synth.measurement import ArmFit, StandingArm
@@ -21,15 +22,15 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 REACH = 30e-3  # m, either way, unless told
-_STEPS, _ROUNDS = 12, 3
+_STEPS = 12  # of Gauss and Newton
+_ROUNDS = 3  # of these, with weights that grow with the misses
 _SMALL = 1e-5  # m, of the differences
 _ARRIVED = 1e-5  # m
 # A setting of 10 mm must save 0.1 mm of every miss: whatever does nothing stays as it is.
 _EFFORT = 0.01
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Settings:
     """What to set.
 
@@ -92,7 +93,7 @@ def best_settings(
         # Lawson (1961): weights that grow with the miss lead to the least largest one.
         weights = weights * np.sqrt(misses / misses.mean()) if misses.mean() > 1e-6 else weights
     arm = with_settings(fit.arm, best)
-    joints = arm.following(joints, task.positions_in_base)
+    joints = joints_following(arm, joints, task.positions_in_base)
     then = outlook(replace(fit, arm=arm), joints, task.positions_in_base, task.tolerances)
     from_p3 = arm.offset + robot.tip_offset
     d35, d45 = np.hypot(from_p3, arm.radius), np.hypot(robot.d34 - from_p3, arm.radius)
@@ -111,7 +112,7 @@ def _least_squares(
 
     def residuals(at: FloatArray, start: FloatArray) -> tuple[FloatArray, FloatArray]:
         there = with_settings(arm, at)
-        angles = there.following(start, targets, 4)
+        angles = joints_following(there, start, targets, 4)
         miss = (there.forward(angles) - targets) * weights[:, None]
         return np.concatenate([miss.reshape(*at.shape[:-1], -1), _EFFORT * at], axis=-1), angles
 

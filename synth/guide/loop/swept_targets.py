@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.guide.loop.outlook import Outlook
+from synth.measurement import joints_closest_to, joints_following
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
@@ -18,8 +18,7 @@ if TYPE_CHECKING:
 _SAMPLES = 1000
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class SweptTarget:
     """What becomes of a target on the calibrated arm.
 
@@ -43,11 +42,11 @@ class SweptTarget:
 
 def swept_targets(calibration: Calibration, task: Task) -> list[SweptTarget]:
     """Return what becomes of each target of a task on a calibrated arm."""
-    joints = calibration.arm.closest(task.positions_in_base)
+    joints = joints_closest_to(calibration.arm, task.positions_in_base)
     arms = calibration.samples(_SAMPLES)
     there = np.broadcast_to(joints, (_SAMPLES, *joints.shape))
     if not calibration.joints_known:
-        there = arms.following(there, task.positions_in_base)
+        there = joints_following(arms, there, task.positions_in_base)
     misses = np.linalg.norm(arms.forward(there) - task.positions_in_base, axis=-1)
     outlook = Outlook(joints, misses, task.tolerances)
     return [

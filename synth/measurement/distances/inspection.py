@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.geometry import CategoryDistances, Invariants, SweptCircle
 from synth.measurement.distances.link_fit import PAIRS, LinkFit, fit_link
 from synth.measurement.distances.misprint import Misprint, find_misprint
@@ -21,8 +21,7 @@ if TYPE_CHECKING:
 SAMPLES = 4000
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Inspection:
     """A measured shape, looked at.
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -46,8 +46,7 @@ class Precision:
         return cls(sigma, _BOUND_OF_SIGMA * sigma, is_rounding=False)
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class MeasuredDistances:
     """Distances between points P1, P2, ...; not every pair need be there.
 
@@ -147,8 +146,7 @@ class MeasuredDistances:
         )
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Measurement:
     """One shape of a robot, as it was measured.
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.errors import GeometryError
 from synth.geometry import realise, squared_distances
 from synth.measurement.distances.relaxation import nearest_gram
@@ -36,8 +36,7 @@ class Fit(SentenceEnum):
     IMPOSSIBLE = "impossible", "no points in any space have distances that keep the bounds"
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Nearest:
     """Points in space, and how far their distances are from the measured ones.
 
@@ -152,7 +151,7 @@ def _starts(gram: FloatArray) -> list[FloatArray]:
 
 def _polished(measured: MeasuredDistances, start: FloatArray, stiffnesses: tuple[float, ...]) -> FloatArray:
     """Return the points of the local minimum near a start, shape (n, 3), m."""
-    # 1 s to import, which only who uses it shall pay; scipy has no types of its own.
+    # 1 s to import, paid only when it is used; scipy has no types of its own.
     from scipy.optimize import least_squares  # type: ignore[import-untyped]  # noqa: PLC0415
 
     points = start

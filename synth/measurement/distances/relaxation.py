@@ -83,7 +83,7 @@ class _Problem:
     """The Gram matrix as an unknown, in units of a typical squared distance."""
 
     def __init__(self, distances: MeasuredDistances, *, bounded: bool) -> None:
-        # 1.5 s to import, which only who asks for it shall pay.
+        # 1.5 s to import, paid only when it is asked for.
         import cvxpy  # noqa: PLC0415
 
         cp: Any = cvxpy

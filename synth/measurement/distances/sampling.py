@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.geometry import squared_distances
 
 if TYPE_CHECKING:
@@ -44,8 +44,7 @@ class Spread:
         return cls(*(float(value) for value in np.percentile(values, [0.0, 5.0, 50.0, 95.0, 100.0])))
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Samples:
     """Shapes that a measurement allows, in the base frame: P1 the origin, P3 in the half-plane x > 0, y = 0.
 

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import Field
 
 from synth.geometry import Category  # noqa: TC001 - pydantic reads the annotation
 from synth.task import (
     LARGEST,
-    MAPPING,
-    TEXT,
-    LengthUnit,
+    FileOfARobot,
     Name,
     Position,
     Positive,
-    RobotEntry,
     Strict,
     absent,
 )
@@ -60,16 +57,10 @@ class ConfigurationEntry(Strict):
     markers: MarkersEntry = Field(default_factory=absent, description="the marker positions measured")
 
 
-class MeasuredFile(ConfigurationEntry):
+class MeasuredFile(ConfigurationEntry, FileOfARobot):
     """A file with one measured shape, or with several under `configurations`."""
 
-    synth: Annotated[int, Field(ge=1, le=1)] = Field(description="version of this format: 1")
     name: Name = Field(default_factory=absent, description="what the shape is called")
-    length_unit: LengthUnit = Field(description="unit of all lengths in this file: mm, cm or m")
-    robot: Annotated[
-        Annotated[str, Tag(TEXT)] | Annotated[RobotEntry, Tag(MAPPING)],
-        Discriminator(lambda value: {str: TEXT, dict: MAPPING}.get(type(value))),
-    ] = Field(description="a preset's name, the path of a robot file, or a mapping")
     configurations: dict[Name, ConfigurationEntry] = Field(
         default_factory=absent, description="several measured shapes by their names"
     )

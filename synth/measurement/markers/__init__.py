@@ -6,6 +6,7 @@ from synth.measurement.markers.examination import Examination, examine
 from synth.measurement.markers.marker_file import load_points, load_readings
 from synth.measurement.markers.markers import MARKER_ERROR, Marker, Place, Readings, marker_named, sigma_of
 from synth.measurement.markers.standing_arm import StandingArm, cross, onto_vertical, rotation_matrix
+from synth.measurement.markers.standing_joints import joints_closest_to, joints_following, left_to_joints
 
 __all__ = [
     "MARKER_ERROR",
@@ -20,6 +21,9 @@ __all__ = [
     "cross",
     "examine",
     "fit_arm",
+    "joints_closest_to",
+    "joints_following",
+    "left_to_joints",
     "load_points",
     "load_readings",
     "marker_named",

@@ -6,12 +6,12 @@ wanted, its end turned onto the markers seen; derivatives are central difference
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.measurement.markers.markers import Place
 from synth.measurement.markers.standing_arm import FREEDOMS, StandingArm
 
@@ -21,10 +21,12 @@ if TYPE_CHECKING:
 _STEPS = 20
 _SMALL = 1e-6  # m and rad, of the differences
 _ARRIVED = 1e-7  # m and rad
-# How well a turn of joint 1 shows axis 1: where it passes the base, m, and its direction, rad.
-BASE_SHIFT, BASE_TILT = 0.15e-3, 0.3e-3
+# How well a turn of joint 1 shows axis 1.
+BASE_SHIFT = 0.15e-3  # m, where it passes the base
+BASE_TILT = 0.3e-3  # rad, its direction
 # A base of which only markers tell: so wide that they alone decide.
-_ANY_SHIFT, _ANY_TILT = 1.0, 1.0
+_ANY_SHIFT = 1.0  # m
+_ANY_TILT = 1.0  # rad
 # What is known of the roll of the link's end about axis 2 where no marker shows it: that somebody meant to
 # bend the link as was asked.
 _ROLL = 0.12  # rad
@@ -32,8 +34,7 @@ _ANYWHERE = 10.0  # m and rad
 _NOT_SHOWN = 0.05  # a freedom left as uncertain as this, m or rad, was not measured
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class ArmFit:
     """The arm that fits the markers best, and how sure that is.
 

@@ -2,22 +2,22 @@
 
 The unknowns are where the circle of P5 is, how axis 2 points, the zero of joint 2 and the radius, seven
 numbers; axis 1 is the z axis of the frame. With the joint angles known each point is worth three numbers.
-With
-unknown ones it is worth one, its distance from the surface, and only the five invariants of the surface can
-be
-found: the zeros of the joints stay open. Gauss-Newton steps from several starts, derivatives by differences.
+With unknown ones it is worth one, its distance from the surface, and only the five invariants of the surface
+can be found: the zeros of the joints stay open. Gauss-Newton steps from several starts, derivatives by
+differences.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.geometry import Invariants, SweptCircle
 from synth.measurement.markers.standing_arm import rotation_matrix
+from synth.measurement.markers.standing_joints import joints_closest_to, joints_following
 from synth.robot import Interval, JointLimits
 from synth.rounding import rounded_up, told_apart
 
@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 SURFACE_RMS = 0.3e-3  # m; a calibration that promises no better than this is refused, unless told
 UNKNOWNS = 7
 _SMALL = 1e-6  # m and rad, of the differences
-_STEPS, _ARRIVED = 40, 1e-7
+_STEPS = 40
+_ARRIVED = 1e-7  # m and rad
 _NO_BETTER = 1e-4  # of chi-square
 _STARTS = 4
 _START_SPREAD = np.array([8e-3] * 3 + [0.06] * 3 + [2e-3])  # m and rad
@@ -42,8 +43,7 @@ _SECONDS = 181  # angles of joint 2 at which the surface is looked at
 _FEWEST = 8
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Calibration:
     """The arm that fits a sweep best.
 
@@ -161,7 +161,7 @@ def _misses(
 ) -> tuple[FloatArray, FloatArray]:
     """Return misses, shape (..., n, 3), m, and the joints there: those given, or the best near some."""
     if joints is None:
-        there = arm.following(near, points, steps)
+        there = joints_following(arm, near, points, steps)
         return arm.forward(there) - points, there
     return arm.forward(np.broadcast_to(joints, (*arm.end.shape[:-1], *joints.shape))) - points, joints
 
@@ -170,7 +170,7 @@ def _fit(
     points: FloatArray, joints: FloatArray | None, arm: StandingArm, sigma: float
 ) -> tuple[StandingArm, FloatArray, float, FloatArray]:
     """Return the best arm near a start, its information, chi-square, and the misses of the points, m."""
-    near = arm.closest(points) if joints is None else joints
+    near = joints_closest_to(arm, points) if joints is None else joints
     limits, arm = arm.limits, replace(arm, limits=_ANY_TURN)
     steps = np.vstack([np.zeros(UNKNOWNS), _SMALL * np.eye(UNKNOWNS), -_SMALL * np.eye(UNKNOWNS)])
     damping = 1e-3
@@ -239,8 +239,8 @@ def _too_little_swept(
     points: FloatArray, joints: FloatArray | None, arm: StandingArm, rms: float, most_rms: float
 ) -> str:
     """Return that a sweep does not determine the surface, and what to move more."""
-    angles = arm.closest(points)[:, 1] if joints is None else joints[:, 1]
-    seen, whole = float(np.ptp(angles)), arm.limits.second.upper - arm.limits.second.lower
+    angles = joints_closest_to(arm, points)[:, 1] if joints is None else joints[:, 1]
+    seen, whole = np.ptp(angles), arm.limits.second.upper - arm.limits.second.lower
     would, asked = told_apart(rms, most_rms, digits=2)
     return (
         f"the sweep does not determine the surface: it would be off by {would} mm root mean square, and "

@@ -1,52 +1,39 @@
 """Are the markers to be believed? Wrong units, frames and names are refused, bad markers left out.
 
 What is known of any arm decides: distances on its axes and to P5, that axis 1 is the z axis of its base, the
-sense in
-which joints turn. Where a mirrored or turned frame leaves all that as it is, the arm that was wanted decides.
+sense in which joints turn. Where a mirrored or turned frame leaves all that as it is, the arm that was wanted
+decides.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.measurement.markers.arm_fit import ArmFit, fit_arm, marker_positions
+from synth.measurement.markers.frames import PLAUSIBLE, frame_nearer, frame_that_fits, wrong_base
 from synth.measurement.markers.markers import Place, Readings
 from synth.rounding import rounded_up
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from synth.arrays import FloatArray
     from synth.measurement.markers.standing_arm import StandingArm
     from synth.robot import Robot
 
     _Fitter = Callable[[Readings], ArmFit]
 
-_IMPLAUSIBLE, _PLAUSIBLE = 1e-3, 1e-2
+_IMPLAUSIBLE = 1e-3  # chance below which the markers are not believed
 _MOST_REJECTED = 2
 _FACTORS = {"1000 times too large": 1e3, "1000 times too small": 1e-3, "10 times too large": 10.0,
             "10 times too small": 0.1, "in inches, not millimetres": 1 / 25.4}  # fmt: skip
 _SHORTEST = 0.02  # m; distances below tell nothing of a unit
-_UPRIGHT, _AT_ORIGIN = np.radians(20.0), 0.05
-_FAR, _NEAR = 0.07, 0.06  # m, from the arm that was wanted; a hand places a link to some 15 mm
-_FRAMES: dict[str, FloatArray] = {
-    "mirrored: x and -x are exchanged": np.diag([-1.0, 1.0, 1.0]),
-    "mirrored: y and -y are exchanged": np.diag([1.0, -1.0, 1.0]),
-    "mirrored: x and y are exchanged": np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]),
-    "upside down": np.diag([1.0, -1.0, -1.0]),
-    "one with y up, not z": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]),
-    "one with y up, not z, and mirrored": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]]),
-    "one with x up, not z": np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]),
-}
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Examination:
     """What is to be believed of readings.
 
@@ -81,7 +68,7 @@ def examine(
     refusal = (
         _missing(used, base_calibrated=base_calibrated)
         or _wrong_scale(used, wanted, robot)
-        or _wrong_base(used)
+        or wrong_base(used)
     )
     if refusal:
         return Examination(None, used, tuple(lost), refusal)
@@ -91,7 +78,7 @@ def examine(
 
     fit = fitted(used)
     while fit.plausibility < _IMPLAUSIBLE:
-        if refusal := _frame_that_fits(used, fitted) or _swap_that_fits(used, fitted):
+        if refusal := frame_that_fits(used, fitted) or _swap_that_fits(used, fitted):
             return Examination(None, used, tuple(lost), refusal)
         culprit = (
             _culprit(used, fitted, robot.tip_offset)
@@ -109,7 +96,7 @@ def examine(
         lost.append((name, f"it is {1e3 * off:.1f} mm from where the other markers say that it must be"))
         used = used.without(name)
         fit = fitted(used)
-    if refusal := _frame_nearer(fit, wanted):
+    if refusal := frame_nearer(fit, wanted):
         return Examination(None, used, tuple(lost), refusal)
     return Examination(fit, used, tuple(lost))
 
@@ -161,45 +148,13 @@ def _wrong_scale(readings: Readings, wanted: StandingArm, robot: Robot) -> str:
     )
 
 
-def _wrong_base(readings: Readings) -> str:
-    """Return what is wrong with the frame by the markers on axis 1, or nothing."""
-    some = readings.at(Place.AXIS_1)
-    offsets = readings.offsets[some]
-    if len(some) < 2 or np.ptp(offsets) == 0.0:
-        return ""
-    at = readings.positions[some]
-    slope = (offsets - offsets.mean()) @ (at - at.mean(axis=0)) / np.sum((offsets - offsets.mean()) ** 2)
-    p1 = at.mean(axis=0) - offsets.mean() * slope
-    up = slope / np.linalg.norm(slope)
-    if up[2] < np.cos(_UPRIGHT):
-        along = "xyz"[int(np.argmax(np.abs(up)))]
-        sign = "-" if up[np.argmax(np.abs(up))] < 0.0 else ""
-        if abs(up).max() < np.cos(_UPRIGHT):
-            tilt = np.degrees(np.arccos(up[2]))
-            return f"this is not the base frame: from P1 to P2 axis 1 leans {tilt:.0f} deg off z"
-        hint = " or P1 and P2 have each other's names" if (sign, along) == ("-", "z") else ""
-        return f"this is not the base frame, whose z is up: P1 to P2 points along {sign}{along}{hint}"
-    if np.linalg.norm(p1) > _AT_ORIGIN:
-        return f"this is not the base frame, whose origin is P1: P1 is at {_mm(p1)}"
-    return ""
-
-
-def _frame_that_fits(readings: Readings, fitted: _Fitter) -> str:
-    """Return which other frame the readings fit, or nothing."""
-    for words, turn in _FRAMES.items():
-        other = Readings(readings.markers, readings.positions @ turn.T, readings.joints)
-        if fitted(other).plausibility > _PLAUSIBLE:
-            return f"the frame is {words}"
-    return ""
-
-
 def _swap_that_fits(readings: Readings, fitted: _Fitter) -> str:
     """Return which two names must be exchanged for the readings to fit, or nothing."""
     names = dict.fromkeys(readings.names)
     for one, other in combinations(names, 2):
         a, b = (next(m for m in readings.markers if m.name == name) for name in (one, other))
         swapped = tuple(b if m.name == one else a if m.name == other else m for m in readings.markers)
-        if fitted(Readings(swapped, readings.positions, readings.joints)).plausibility > _PLAUSIBLE:
+        if fitted(Readings(swapped, readings.positions, readings.joints)).plausibility > PLAUSIBLE:
             return f"{one} and {other} seem to have each other's names"
     return ""
 
@@ -212,7 +167,7 @@ def _culprit(readings: Readings, fitted: _Fitter, tip_offset: float) -> tuple[st
         if _missing(rest, base_calibrated=True):
             continue
         fit = fitted(rest)
-        if fit.excess > 0 and fit.plausibility > _PLAUSIBLE and fit.shows_axes:
+        if fit.excess > 0 and fit.plausibility > PLAUSIBLE and fit.shows_axes:
             found.append((fit.plausibility, name))
     found.sort(reverse=True)
     if not found or (len(found) > 1 and found[1][0] > 0.1 * found[0][0]):
@@ -222,29 +177,3 @@ def _culprit(readings: Readings, fitted: _Fitter, tip_offset: float) -> tuple[st
     off = readings.take([k for k, other in enumerate(readings.names) if other == name])
     away = marker_positions(arm, off, tip_offset) - off.positions
     return name, float(np.linalg.norm(away, axis=1).max())
-
-
-def _frame_nearer(fit: ArmFit, wanted: StandingArm) -> str:
-    """Return in which other frame the arm would be where it was wanted, or nothing."""
-    turn = wanted.about_axis_1(np.vstack([wanted.end, wanted.end + wanted.axis]), np.full(2, fit.arm.joint1))
-    end, axis = turn[0], turn[1] - turn[0]
-
-    def off(turn: FloatArray) -> float:
-        return float(
-            np.hypot(
-                np.linalg.norm(turn @ fit.arm.end - end), 0.15 * np.linalg.norm(turn @ fit.arm.axis - axis)
-            )
-        )
-
-    if float(fit.arm.axis @ axis) < 0.0 and np.linalg.norm(fit.arm.end - end) < _NEAR:
-        return "axis 2 points the other way than was wanted: P3 and P4 seem to have each other's names"
-    if off(np.eye(3)) > _FAR:
-        for words, turn in _FRAMES.items():
-            if off(turn) < min(_NEAR, 0.5 * off(np.eye(3))):
-                near = f"{1e3 * off(turn):.0f} mm"
-                return f"the frame is {words}: so seen, the arm is {near} from where it was wanted"
-    return ""
-
-
-def _mm(point: FloatArray) -> str:
-    return "(" + ", ".join(f"{1e3 * value:.0f}" for value in point) + ") mm"

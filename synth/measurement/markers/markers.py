@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -76,8 +76,7 @@ def sigma_of(mean_error: float) -> float:
     return mean_error / _MEAN_LENGTH
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Readings:
     """Where markers were seen, each in one posture of the arm.
 

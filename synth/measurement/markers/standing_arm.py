@@ -6,26 +6,21 @@ where the axes are, in the frame of the measurement, with joint 1 at the angle t
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
-from synth.robot import Kinematics, closest_joints, turned
+from synth.arrays import frozen_value
+from synth.robot import turned
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from synth.arrays import FloatArray
     from synth.robot import Arm, JointLimits
 
 FREEDOMS = 11  # of `StandingArm.displaced`
-AXIS_1, LINK_END = slice(0, 5), slice(5, 11)
-
-STEPS = 8  # of `StandingArm.following`
-_FARTHEST = 0.3  # rad, of a joint in one step
-_DAMPING = 1e-7  # m^2; keeps folded and stretched postures, where P5 cannot move, finite
+AXIS_1 = slice(0, 5)  # of the freedoms, those of axis 1
+LINK_END = slice(5, 11)  # and those of the link's end
 
 
 def cross(a: FloatArray, b: FloatArray) -> FloatArray:
@@ -46,8 +41,7 @@ def rotation_matrix(vector: FloatArray) -> FloatArray:
     return np.asarray(np.eye(3) + sine[..., None, None] * cross + versine[..., None, None] * (cross @ cross))
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class StandingArm:
     """Arms as they stand, in the frame of the measurement, m; leading axes "..." may be absent.
 
@@ -149,73 +143,6 @@ class StandingArm:
         cos, sin = radius * np.cos(joints[..., 1, None]), radius * np.sin(joints[..., 1, None])
         v, t = self.frame[..., None, :, 1], self.frame[..., None, :, 2]
         return sin * v - cos * t, cos * v + sin * t
-
-    def left_to_joints(
-        self, joints: FloatArray, targets: FloatArray
-    ) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
-        """Return misses, the velocities by which joints can lessen them, and which joints are held.
-
-        Args:
-            joints: Shape (..., n, 2), rad.
-            targets: Shape (n, 3), m.
-
-        Returns:
-            Misses, shape (..., n, 3), m; velocities, (..., n, 3, 2), m/rad, zero for a joint that a limit
-            holds; whether it does, shape (..., n, 2).
-        """
-        reached, velocities = self.velocities(joints)
-        miss = reached - targets
-        slope = np.einsum("...ij,...i->...j", velocities, miss)
-        lower = np.array([self.limits.base.lower, self.limits.second.lower])
-        upper = np.array([self.limits.base.upper, self.limits.second.upper])
-        held = ((joints <= lower) & (slope > 0.0)) | ((joints >= upper) & (slope < 0.0))
-        return miss, np.where(held[..., None, :], 0.0, velocities), held
-
-    def following(self, joints: FloatArray, targets: FloatArray, steps: int = STEPS) -> FloatArray:
-        """Return the joint angles that come closest to targets, near those given and within the limits.
-
-        Args:
-            joints: Angles to begin with, shape (n, 2) or (..., n, 2), rad.
-            targets: Shape (n, 3), m.
-            steps: Gauss-Newton steps.
-
-        Returns:
-            Angles, shape (..., n, 2), rad; never worse ones than those given.
-        """
-        lower = np.array([self.limits.base.lower, self.limits.second.lower])
-        upper = np.array([self.limits.base.upper, self.limits.second.upper])
-        joints = np.clip(np.broadcast_to(joints, (*self.end.shape[:-1], *joints.shape[-2:])), lower, upper)
-        best, least = joints, np.full(joints.shape[:-1], np.inf)
-        for _ in range(steps + 1):
-            miss, free, held = self.left_to_joints(joints, targets)
-            squared = np.einsum("...i,...i", miss, miss)
-            better = squared < least
-            best, least = np.where(better[..., None], joints, best), np.where(better, squared, least)
-            first, second = free[..., 0], free[..., 1]
-            a = np.einsum("...i,...i", first, first) + _DAMPING
-            b = np.einsum("...i,...i", first, second)
-            c = np.einsum("...i,...i", second, second) + _DAMPING
-            f, g = np.einsum("...i,...i", first, miss), np.einsum("...i,...i", second, miss)
-            step = np.stack([b * g - c * f, b * f - a * g], axis=-1) / (a * c - b * b)[..., None]
-            step = np.where(held, 0.0, np.clip(step, -_FARTHEST, _FARTHEST))
-            joints = np.clip(joints + step, lower, upper)
-        return best
-
-    def closest(self, targets: FloatArray) -> FloatArray:
-        """Return the joint angles within the limits that come closest to targets, of one arm.
-
-        Args:
-            targets: Shape (n, 3), m.
-
-        Returns:
-            Angles, shape (n, 2), rad.
-        """
-        onto_z = onto_vertical(self.direction)
-        frame = turned((onto_z @ self.frame).T, -self.joint1).T
-        centre = turned(onto_z @ (self.centre - self.point), -self.joint1)
-        kinematics = Kinematics(frame, centre, np.asarray(self.radius))
-        joints, _ = closest_joints(kinematics, (targets - self.point) @ onto_z.T, self.limits)
-        return joints
 
 
 def onto_vertical(direction: FloatArray) -> FloatArray:

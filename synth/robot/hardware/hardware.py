@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 
 _TURN_AND_ROUNDING = 2.0 * math.pi + 1e-9
-_FULL_TURN_OF_BASE, _FULL_TURN_OF_SECOND = Interval(-math.pi, math.pi), Interval(0.0, 2.0 * math.pi)
+_FULL_TURN_OF_BASE = Interval(-math.pi, math.pi)
+_FULL_TURN_OF_SECOND = Interval(0.0, 2.0 * math.pi)
 _FLAT = 1e-9  # of d34: a triangle that is flat but for rounding is one
 
 

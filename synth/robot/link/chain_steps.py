@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol, Self
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,11 +18,11 @@ if TYPE_CHECKING:
 
 ARRIVED = 1e-10  # what may be left of an aim, in units of the bend radius and rad
 
-_PATIENCE, _PROGRESS = (
-    10,
-    0.9,
-)  # chains that keep more than this of their miss over so many steps are given up
-_FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-3, 1e-13, 1e6
+_PATIENCE = 10  # steps after which a chain must have come closer
+_PROGRESS = 0.9  # of its miss: what keeps more than this is given up
+_FIRST_DAMPING = 1e-3
+_LEAST_DAMPING = 1e-13
+_MOST_DAMPING = 1e6
 _DUAL_STEPS = 20
 _DUAL_PRECISION = 1e-12
 _EASING_STEPS = 80
@@ -48,8 +47,7 @@ class Aim(Protocol):
         ...
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Wish:
     """What is wanted of the chains at their aim: to be bent little or, with a present one, to change little.
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.robot.hardware import Interval, into_turn, turned
 
 if TYPE_CHECKING:
@@ -59,8 +59,7 @@ def pose_miss(
     return PoseMiss(float(np.linalg.norm(reached[0] - p)), angle, turn)
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class EndPoses:
     """Poses as aims of chains: positions p in units of the bend radius and directions u, shape (n, 3)."""
 

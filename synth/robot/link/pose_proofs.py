@@ -26,13 +26,13 @@ turn decides how short the link can be. So finitely many beta prove it for all.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.robot.hardware import Interval
 from synth.robot.link.reach import LinkReach
 from synth.rounding import Unit, at_least, told_apart
@@ -100,8 +100,7 @@ def why_no_link(link: MalleableLink, position: ArrayLike, axis: ArrayLike) -> st
     return f"{_the_link(link)} ends {at_least(short)} away with axis 2 in this direction"
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class _Tangents:
     """The circle of tangents across axis 2, covered by intervals of the angle beta."""
 

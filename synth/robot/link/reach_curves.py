@@ -61,6 +61,50 @@ def lengths_of(points: FloatArray) -> FloatArray:
     )
 
 
+def boundary(shortest: float, longest: float) -> tuple[Piece, ...]:
+    """Return the curves of the boundary: l1 = longest, l2 = shortest, l3 = longest, and the circle d = 1.
+
+    Args:
+        shortest: Least length, in units of the bend radius.
+        longest: Largest length, likewise.
+    """
+
+    def front(t: FloatArray) -> FloatArray:
+        left = longest - t
+        return np.stack([1.0 - np.cos(t) + left * np.sin(t), np.sin(t) + left * np.cos(t)], axis=-1)
+
+    def circle(t: FloatArray) -> FloatArray:
+        return np.stack([1.0 - np.cos(t), np.sin(t)], axis=-1)
+
+    def two_arcs(length: float) -> Callable[[FloatArray], FloatArray]:
+        def end(t: FloatArray) -> FloatArray:
+            back = length - 2.0 * t
+            return np.stack([2.0 * np.cos(t) - 1.0 - np.cos(back), 2.0 * np.sin(t) + np.sin(back)], axis=-1)
+
+        return end
+
+    def on_this_side(points: FloatArray) -> NDArray[np.bool_]:
+        return points[..., 0] >= 0.0
+
+    def before_return(points: FloatArray) -> NDArray[np.bool_]:
+        return (points[..., 0] >= 0.0) & (points[..., 1] >= 0.0) & (arcs_to(points)[1] >= longest)
+
+    def at_return(points: FloatArray) -> NDArray[np.bool_]:
+        rho, h = points[..., 0], points[..., 1]
+        inside = np.hypot(h, rho - 1.0) < 1.0
+        return (rho >= 0.0) & (inside | ((h >= 0.0) & (arcs_to(points)[0] <= shortest)))
+
+    # Beyond a full circle the front has crossed the axis for good at t = 3 pi / 2.
+    last = longest if longest < TURN else 0.75 * TURN
+    rear, inner = two_arcs(shortest), two_arcs(longest)
+    return (
+        *runs(front, 0.0, last, on_this_side),
+        *runs(circle, shortest, min(longest, np.pi), before_return),
+        *runs(rear, max(shortest - np.pi, 0.0), 0.5 * shortest, before_return),
+        *runs(inner, max(longest - TURN, 0.0), min(longest - np.pi, 0.5 * longest), at_return),
+    )
+
+
 def runs(
     curve: Callable[[FloatArray], FloatArray],
     first: float,

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, frozen_value
 from synth.checks import Checks
+from synth.rounding import rounded_down
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import ArrayLike
+
+_STRAIGHT = 100.0  # m, a bend radius that no eye and no hand can tell from none
 
 
 def arc_motion(curvatures: ArrayLike, lengths: ArrayLike) -> tuple[FloatArray, FloatArray]:
@@ -85,8 +88,7 @@ def _along(curvatures: ArrayLike, lengths: ArrayLike) -> Iterator[tuple[FloatArr
         yield rotation, position
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class LinkShape:
     """One shape of the malleable link; it starts at P2 along +z of the base frame.
 
@@ -191,6 +193,14 @@ class LinkShape:
             if beyond <= start + turn / bend < start + length:
                 heights.append(origin[2] + float(rotation[2] @ arc_motion(k, turn / bend)[1]))
         return float(min(heights))
+
+    def describe(self) -> str:
+        """Return the numbers of the shape for the user, without a full stop: mm and deg."""
+        length = f"link {1e3 * self.length:.1f} mm long"
+        if self.min_bend_radius >= _STRAIGHT:
+            return f"{length}, as good as straight"
+        radius, bend = rounded_down(self.min_bend_radius), math.degrees(self.total_bend)
+        return f"{length}, smallest bend radius {radius} mm, {bend:.1f} deg of bend in all"
 
     @cached_property
     def _arc_frames(self) -> tuple[FloatArray, FloatArray]:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, frozen_value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -26,8 +26,7 @@ _CHARTS = (
 )
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Boxes:
     """Boxes of the parameters (rho, h, alpha, beta, psi) of the link's end.
 

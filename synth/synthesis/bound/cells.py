@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, frozen_value
 from synth.synthesis.bound.limits import SLACK
 
 if TYPE_CHECKING:
@@ -20,8 +19,7 @@ _PARTS = 4  # into which a cell is cut
 _CUTS = 2  # times at most
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Cells:
     """Pairs of a target and a cell of the circle of P5 in some boxes, sorted by box and target.
 
@@ -53,8 +51,7 @@ class Cells:
         return np.flatnonzero(np.concatenate([[True], key[1:] != key[:-1]]))
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Grid:
     """The coarsest cells, of phi as of psi, and which of them go together.
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.robot import ANYWHERE, ArcChains, stepped, turned
 
 if TYPE_CHECKING:
@@ -19,8 +18,7 @@ if TYPE_CHECKING:
 _STEPS = 40
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class LinkEnd:
     """How a link is to end, up to a turn about axis 1.
 
@@ -51,8 +49,7 @@ class LinkEnd:
         return [chains.shape(x[row, :-1]) for row in np.argsort(left, kind="stable")]
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class _Ends:
     """Ends as aims of chains: positions in units of the bend radius, (n, 3), and frames, (n, 3, 3)."""
 

@@ -6,12 +6,11 @@ Every inequality is proven in docs/bound.md.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, frozen_value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -22,8 +21,7 @@ if TYPE_CHECKING:
 _TINY = 1e-300
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Forms:
     """Affine lower bounds of the distance of each candidate's target from its cell, in units of the box.
 
@@ -68,8 +66,7 @@ class Forms:
         return np.asarray(np.maximum(over_box.max(axis=0), self.floor))
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Circle:
     """Where P5 is to reach: the circle of P5 about axis 2, and the targets.
 

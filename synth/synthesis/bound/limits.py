@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, frozen_value
 from synth.robot import Interval, LinkReach
 
 if TYPE_CHECKING:
@@ -27,8 +27,7 @@ _SMALL_TURN = 0.15  # rad
 _DIRECTIONS = 3  # tried as that of the straight part of the link
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class ReachTable:
     """Upper bounds of the margin of a link's reach, from its values on a grid of the half-plane.
 
@@ -68,8 +67,7 @@ class ReachTable:
         return np.asarray(self.margins[i, j] + moved)
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Limits:
     """What a task and its robot rule out, box by box."""
 
@@ -189,42 +187,47 @@ class Limits:
         some_psi = np.broadcast_to(psi, allowed.shape)[box, k][:, None]
         t = np.cos(some_psi) * e1[box] + np.sin(some_psi) * e2[box]
         turn = np.broadcast_to(turn, allowed.shape)[box, k]
-        allowed[box, k] = self._spans(p[box], t, moved[box, 0], turn)
+        allowed[box, k] = _spans(self.link, self.most_bend, p[box], t, moved[box, 0], turn)
         return np.asarray(allowed)
 
-    def _spans(self, p: FloatArray, t: FloatArray, moved: FloatArray, turn: FloatArray) -> NDArray[np.bool_]:
-        """Whether the link is long enough to turn from z to a direction n, go along it, and turn to t.
 
-        Any direction n gives a proof of NO; here it is about that of the straight part of the shortest way.
+def _spans(
+    link: MalleableLink, most_bend: float, p: FloatArray, t: FloatArray, moved: FloatArray, turn: FloatArray
+) -> NDArray[np.bool_]:
+    """Whether the link is long enough to turn from z to a direction n, go along it, and turn to t.
 
-        Args:
-            p: The end seen from P2, shape (M, 3), m.
-            t: Its direction, shape (M, 3).
-            moved: How far the end may be from there, shape (M,), m.
-            turn: How far its direction may be from there, shape (M,), rad.
-        """
-        r, longest = self.link.min_bend_radius, self.link.length.upper
-        start = np.array([0.0, 0.0, 1.0])
-        allowed, n = np.ones(len(p), dtype=bool), p
-        if self.most_bend < math.pi:
-            return allowed
-        for step in range(_DIRECTIONS):
-            n = n / np.maximum(np.linalg.norm(n, axis=-1, keepdims=True), 1e-12)
-            cosines = [np.clip(np.einsum("...i,...i", direction, n), -1.0, 1.0) for direction in (start, t)]
-            first, last = (np.arctan2(np.sqrt(1.0 - cosine**2), cosine) for cosine in cosines)
-            beside = np.maximum(0.5 * (first + last - self.most_bend), 0.0)
-            # The next direction: where p is no more beside the present one than its bound falls there.
-            falls = r * np.cos(beside) + 0.5 * (longest - r * self.most_bend) * np.sin(beside)
-            ahead = p - (r * (np.sin(first) + np.sin(last) - 2.0 * np.sin(beside)))[:, None] * n
-            for direction, cosine in zip((start, t), cosines, strict=True):
-                sine = np.maximum(np.sqrt(1.0 - cosine**2), 1e-6)
-                ahead -= ((falls - r * cosine) / sine)[:, None] * (direction - cosine[:, None] * n)
-            last = np.maximum(last - turn, 0.0)
-            beside = np.maximum(0.5 * (first + last - self.most_bend), 0.0)
-            straight = longest - r * (first + last - 2.0 * beside)
-            most = r * (np.sin(first) + np.sin(last) - 2.0 * np.sin(beside)) + straight * np.cos(beside)
-            allowed &= np.einsum("mi,mi->m", p, n) <= most + moved + SLACK
-            # Full steps would go to and fro.
-            ahead /= np.maximum(np.linalg.norm(ahead, axis=-1, keepdims=True), 1e-12)
-            n = ahead if step == 0 else n + ahead
+    Any direction n gives a proof of NO; here it is about that of the straight part of the shortest way.
+
+    Args:
+        link: The link.
+        most_bend: Its largest total bend, rad.
+        p: The end seen from P2, shape (M, 3), m.
+        t: Its direction, shape (M, 3).
+        moved: How far the end may be from there, shape (M,), m.
+        turn: How far its direction may be from there, shape (M,), rad.
+    """
+    r, longest = link.min_bend_radius, link.length.upper
+    start = np.array([0.0, 0.0, 1.0])
+    allowed, n = np.ones(len(p), dtype=bool), p
+    if most_bend < math.pi:
         return allowed
+    for step in range(_DIRECTIONS):
+        n = n / np.maximum(np.linalg.norm(n, axis=-1, keepdims=True), 1e-12)
+        cosines = [np.clip(np.einsum("...i,...i", direction, n), -1.0, 1.0) for direction in (start, t)]
+        first, last = (np.arctan2(np.sqrt(1.0 - cosine**2), cosine) for cosine in cosines)
+        beside = np.maximum(0.5 * (first + last - most_bend), 0.0)
+        # The next direction: where p is no more beside the present one than its bound falls there.
+        falls = r * np.cos(beside) + 0.5 * (longest - r * most_bend) * np.sin(beside)
+        ahead = p - (r * (np.sin(first) + np.sin(last) - 2.0 * np.sin(beside)))[:, None] * n
+        for direction, cosine in zip((start, t), cosines, strict=True):
+            sine = np.maximum(np.sqrt(1.0 - cosine**2), 1e-6)
+            ahead -= ((falls - r * cosine) / sine)[:, None] * (direction - cosine[:, None] * n)
+        last = np.maximum(last - turn, 0.0)
+        beside = np.maximum(0.5 * (first + last - most_bend), 0.0)
+        straight = longest - r * (first + last - 2.0 * beside)
+        most = r * (np.sin(first) + np.sin(last) - 2.0 * np.sin(beside)) + straight * np.cos(beside)
+        allowed &= np.einsum("mi,mi->m", p, n) <= most + moved + SLACK
+        # Full steps would go to and fro.
+        ahead /= np.maximum(np.linalg.norm(ahead, axis=-1, keepdims=True), 1e-12)
+        n = ahead if step == 0 else n + ahead
+    return allowed

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, frozen_value
 from synth.synthesis.bound.cells import CELLS, Cells, Grid, wrapped
 from synth.synthesis.bound.contraction import hull_of_cells
 from synth.synthesis.bound.limits import SLACK
@@ -22,8 +21,7 @@ if TYPE_CHECKING:
 _THIN = 1e-12  # rad: half of psi's width where there is none
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Candidates:
     """Boxes in which every target may be near, and where.
 
@@ -50,8 +48,7 @@ class Candidates:
         )
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Narrowing:
     """What keeps cells, and then boxes, from being near all targets.
 

@@ -180,7 +180,7 @@ def _left_out(task: Task) -> tuple[str, ...]:
     if task.solids:
         words.append("the obstacles")
     if task.topology is not Topology.ANY:
-        words.append(f"that the shape shall be {task.topology.value}")
+        words.append(f"that the shape must be {task.topology.value}")
     return tuple(words)
 
 

@@ -6,13 +6,12 @@ It is a part of the independent check: plain numpy, through no expression of the
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
-from synth.robot import Arm, ArmBody
+from synth.arrays import frozen_value
+from synth.robot import Arm, ArmBody, clear_of_obstacles, clear_of_tube, tube_clear_of_itself
 from synth.synthesis.check.approaches import beyond_direction
 
 if TYPE_CHECKING:
@@ -25,9 +24,9 @@ if TYPE_CHECKING:
 LENGTH_SLACK = 1e-6  # what rounding may do, m
 _FIRST = 1e3  # m / rad: joint angles that point as asked come before all that come nearer
 _TOGETHER = 2000  # joint angles whose clearances are looked at together
-# Of more joint angles than that the ranges that they lie in are looked at first: whole ranges of joint 2, so
-# many of them, in which the arm is clear of itself by a little, m.
-_RANGES, _CLEARLY = 500, 1e-3
+# Of more joint angles than that the ranges of joint 2 that they lie in are looked at first.
+_RANGES = 500
+_CLEARLY = 1e-3  # m; in a range in which the arm is clear of itself by this nothing else is looked at
 
 
 def chosen_joints(
@@ -82,18 +81,17 @@ def _misses(task: Task, arm: Arm, candidates: FloatArray, targets: FloatArray) -
 def _rod_from_tube(body: ArmBody, theta2: FloatArray) -> FloatArray:
     """Return how far the rod keeps from the tube, shape (n,), m: lower bounds, less close ones if many."""
     if len(theta2) <= _TOGETHER:
-        return body.rod_from_tube(theta2)
+        return clear_of_tube(body, theta2)
     edges = np.linspace(theta2.min(), theta2.max(), _RANGES + 1)
-    of_ranges = body.rod_from_tube(edges[:-1], edges[1:], enough=_CLEARLY)
+    of_ranges = clear_of_tube(body, edges[:-1], edges[1:], enough=_CLEARLY)
     bounds = of_ranges[np.clip(np.searchsorted(edges, theta2, side="right") - 1, 0, _RANGES - 1)]
     close = np.flatnonzero(~(bounds >= 0.0))
     for part in np.split(close, range(_TOGETHER, len(close), _TOGETHER)):
-        bounds[part] = body.rod_from_tube(theta2[part])
+        bounds[part] = clear_of_tube(body, theta2[part])
     return bounds
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Clearances:
     """What the arm keeps clear of, as lower bounds of distances, m; see `ArmBody`.
 
@@ -113,12 +111,12 @@ class Clearances:
         body, solids, shape = ArmBody(arm), seen_by(task, arm), candidates.shape[:-1]
         joints = candidates.reshape(-1, 2)
         parts = np.split(joints, range(_TOGETHER, len(joints), _TOGETHER))
-        from_obstacles = np.concatenate([body.from_obstacles(part, solids) for part in parts])
+        from_obstacles = np.concatenate([clear_of_obstacles(body, part, solids) for part in parts])
         rod_from_tube = _rod_from_tube(body, joints[:, 1])
         return cls(
             from_obstacles.reshape(*shape, len(solids), 2),
             rod_from_tube.reshape(shape),
-            body.tube_from_itself(),
+            tube_clear_of_itself(body),
         )
 
     @property
@@ -146,6 +144,6 @@ def clear_of_everything(task: Task, arm: Arm, joints: FloatArray) -> NDArray[np.
     body, solids, flat = ArmBody(arm), seen_by(task, arm), joints.reshape(-1, 2)
     parts = np.split(flat, range(_TOGETHER, len(flat), _TOGETHER))
     # A way that ends where it starts is one of which nobody asks how deep it is in something.
-    clear = [body.from_obstacles(part, solids, end=part, enough=0.0) >= -LENGTH_SLACK for part in parts]
+    clear = [clear_of_obstacles(body, part, solids, end=part, enough=0.0) >= -LENGTH_SLACK for part in parts]
     of_itself = _rod_from_tube(body, flat[:, 1]) >= -LENGTH_SLACK
     return (np.concatenate(clear).all(axis=(1, 2)) & of_itself).reshape(joints.shape[:-1])

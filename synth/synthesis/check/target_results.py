@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.synthesis.check.approaches import beyond_direction
 from synth.synthesis.check.clearances import clear_of_everything
 
@@ -19,8 +18,7 @@ if TYPE_CHECKING:
     from synth.task import Approach, Task
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class TargetResult:
     """What becomes of one target. Positions in the task frame, m.
 
@@ -33,7 +31,7 @@ class TargetResult:
         within_tolerance: Whether the target is reached.
         approach: In which direction the rigid link is to point there; None if that is all one.
         astray: By how much the rigid link points elsewhere than asked, rad; NaN if no direction is asked for.
-        clearance: How far the arm at least keeps from the obstacles there, m; told up to 0.1 m, and
+        clearance: How far the arm at least keeps from the obstacles there, m; at most 0.1 m is reported, and
             infinite without obstacles.
         joints: Joint angles (theta1, theta2), rad.
         alternatives: Other joint angles that reach it within its tolerance, shape (k, 2), rad, as clear of

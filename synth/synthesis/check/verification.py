@@ -6,11 +6,10 @@ Only this module may say that a target is reached or that a shape respects the l
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.checks import refuse_unless
 from synth.robot import Arm
 from synth.synthesis.check.approaches import beyond_direction, pointing_astray
@@ -19,8 +18,7 @@ from synth.synthesis.check.violations import Violation, violations
 from synth.task import Task
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Verification:
     """What a shape really does for a task.
 
@@ -72,7 +70,7 @@ def verify(task: Task, arm: Arm, joints: FloatArray | None = None, *, keep: bool
         arm: The robot in the shape.
         joints: Joint angles to consider beside the closest ones and the branches of the inverse
             kinematics, shape (n, 2), rad: at the closest point the arm may be in the way of something.
-        keep: Whether the arm shall stand at these angles wherever they reach the target within its
+        keep: Whether the arm is to stand at these angles wherever they reach the target within its
             tolerance, and clear of everything, though others come nearer.
 
     Returns:

@@ -69,7 +69,7 @@ class SymbolicArm:
         self._tie_squared_distances(p3, p4)
         for point in (p3, p4):
             self._above_floor(point[2])
-        self._ask_for_topology(position, u, v, t)
+        _ask_for_topology(structure, g, position, u, v, t)
 
         offset, radius = self._end_effector_circle()
         centre = position + offset * u
@@ -128,27 +128,6 @@ class SymbolicArm:
         ends = ((p1, p3), (p1, p4), (p2, p3), (p2, p4))
         self._g.zero(s - ca.vertcat(*(ca.sumsqr(b - a) for a, b in ends)))
 
-    def _ask_for_topology(self, position: ca.SX, u: ca.SX, v: ca.SX, t: ca.SX) -> None:
-        """Constrain the axes: two regular equations for each special category."""
-
-        def from_axis_2(point: ca.DM) -> ca.SX:
-            return ca.vertcat(ca.dot(position - point, v), ca.dot(position - point, t))
-
-        p1, p2 = ca.DM.zeros(3), ca.DM([0.0, 0.0, self._structure.robot.d12])
-        match self._structure.topology:
-            case Topology.SPHERICAL:
-                self._g.zero(from_axis_2(p1))
-            case Topology.PUMA:
-                self._g.zero(from_axis_2(p2))
-            case Topology.SCARA:
-                self._g.zero(u[:2])
-            case Topology.GENERAL:
-                for point in (p1, p2):
-                    self._g.between(ca.sumsqr(from_axis_2(point)), _GENERAL_DISTANCE**2, math.inf)
-                self._g.between(ca.sumsqr(u[:2]), math.sin(_GENERAL_ANGLE) ** 2, math.inf)
-            case Topology.ANY:
-                pass
-
     def _end_effector_circle(self) -> tuple[ca.SX, ca.SX]:
         """Return offset along axis 2 and radius of P5's circle; free rigid links get s35 and s45."""
         robot, rigid = self._structure.robot, self._structure.robot.rigid_link
@@ -202,3 +181,27 @@ class SymbolicArm:
 def _turned(theta1: ca.SX, x: ca.SX, y: ca.SX, z: ca.SX) -> ca.SX:
     """Return vectors turned by joint 1, shape (n, 3)."""
     return ca.horzcat(ca.cos(theta1) * x - ca.sin(theta1) * y, ca.sin(theta1) * x + ca.cos(theta1) * y, z)
+
+
+def _ask_for_topology(
+    structure: Structure, g: Constraints, position: ca.SX, u: ca.SX, v: ca.SX, t: ca.SX
+) -> None:
+    """Constrain the axes: two regular equations for each special category."""
+
+    def from_axis_2(point: ca.DM) -> ca.SX:
+        return ca.vertcat(ca.dot(position - point, v), ca.dot(position - point, t))
+
+    p1, p2 = ca.DM.zeros(3), ca.DM([0.0, 0.0, structure.robot.d12])
+    match structure.topology:
+        case Topology.SPHERICAL:
+            g.zero(from_axis_2(p1))
+        case Topology.PUMA:
+            g.zero(from_axis_2(p2))
+        case Topology.SCARA:
+            g.zero(u[:2])
+        case Topology.GENERAL:
+            for point in (p1, p2):
+                g.between(ca.sumsqr(from_axis_2(point)), _GENERAL_DISTANCE**2, math.inf)
+            g.between(ca.sumsqr(u[:2]), math.sin(_GENERAL_ANGLE) ** 2, math.inf)
+        case Topology.ANY:
+            pass

@@ -54,7 +54,7 @@ class Ipopt:
         x: The unknowns.
         g: The constraints.
         parameters: What has other values in each run, a column.
-        objective: What shall be least.
+        objective: What is to be least.
         near: Whether it starts near the answer.
         nearly_clear: Whether, if not, it starts nearly clear of obstacles.
     """

@@ -13,12 +13,11 @@ nearest point at the shape that the solver starts from; new ones are taken where
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.robot import ArmBody, turned
 
 if TYPE_CHECKING:
@@ -29,7 +28,8 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 PIECES = 16  # of the tube
-COLUMN, ROD = 0, -1  # the base's column P1P2 and the rigid link, beside the pieces 1 to 16
+COLUMN = 0  # the base's column P1P2, beside the pieces 1 to 16
+ROD = -1  # the rigid link
 ANY_TARGET = -1
 
 _GOLDEN_STEPS = 44
@@ -41,8 +41,7 @@ _NEAR = 0.06
 _NEAR_ITSELF = 0.03
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Separation:
     """A plane between a piece of the arm and an obstacle, or another piece.
 
@@ -118,7 +117,9 @@ def _from_itself(arm: Arm, joints: FloatArray) -> Iterator[Separation]:
 def _nearest_to_solid(solid: Solid, start: FloatArray, end: FloatArray) -> FloatArray:
     """Return the points of segments, ends of shape (..., 3), that are nearest to a solid, or deepest.
 
-    The signed distance from a convex solid is a convex function, so a golden section finds them.
+    The signed distance from a convex solid is a convex function, so a golden section finds them. It is our
+    own: of nine segments in ten an end is nearest, and `scipy.optimize.elementwise.find_minimum` wants a
+    point below both ends, and took 2.5 to 5 times the time.
     """
     lower, upper = np.zeros((*start.shape[:-1], 1)), np.ones((*start.shape[:-1], 1))
     for _ in range(_GOLDEN_STEPS):

@@ -1,4 +1,4 @@
-"""The program itself: what is unknown, what shall be least, and how a start is polished.
+"""The program itself: what is unknown, what is to be least, and how a start is polished.
 
 "Gamma passes through the targets" is not written as Gamma = 0. In three of the four categories Gamma
 is a perfect square, so it vanishes together with its gradient and no constraint qualification holds.
@@ -28,14 +28,13 @@ energy, which chooses the gentlest among the shapes that miss alike. Overlaps co
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, frozen_value
 from synth.synthesis.nlp.arm import SymbolicArm
 from synth.synthesis.nlp.blocks import Constraints, Unknowns
 from synth.synthesis.nlp.ipopt import Ipopt
@@ -65,8 +64,7 @@ _ASTRAY_UNIT, _WITHIN = 1e-3, 1e-8
 _FINEST_UNIT = 1.0
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class NlpAnswer:
     """Where the solver stopped. A claim only: the verification decides what it is worth.
 

@@ -1,4 +1,4 @@
-"""How a step of the unknowns moves the ends of links, the circles of P5, and the base: for many at once."""
+"""How a step of the unknowns moves the ends of links and the circles of P5: for many at once."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.geometry import rotation_of
 from synth.robot import ArcChains
 from synth.synthesis.shapes.columns import ARCS, CURVATURES, D35, D45, LENGTH
 
@@ -45,23 +44,3 @@ def motion_of_arm(robot: Robot, unknowns: FloatArray, d35: FloatArray, d45: Floa
     whole = np.zeros((len(motion), 8, motion.shape[2] + 2))
     whole[:, :6, : LENGTH + 1], whole[:, 6:, D35], whole[:, 6:, D45] = motion, by_d35, by_d45
     return whole
-
-
-def motion_of_base(rotation: FloatArray, angles: FloatArray) -> FloatArray:
-    """Return how a base shifts and turns in its own frame by its six numbers, shape (N, 6, 6).
-
-    Args:
-        rotation: From the base frames to the task frame, shape (N, 3, 3).
-        angles: Roll, pitch and yaw, shape (N, 3), rad.
-    """
-    _, pitch, yaw = np.moveaxis(angles, -1, 0)
-    zero, back = np.zeros_like(yaw), np.swapaxes(rotation, -1, -2)
-    about = [
-        rotation_of(zero, pitch, yaw)[..., 0],
-        rotation_of(zero, zero, yaw)[..., 1],
-        np.broadcast_to([0.0, 0.0, 1.0], (len(yaw), 3)),
-    ]
-    motion = np.zeros((len(yaw), 6, 6))
-    motion[:, :3, :3] = back
-    motion[:, 3:, 3:] = back @ np.stack(about, axis=-1)
-    return motion

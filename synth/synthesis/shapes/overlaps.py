@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from synth.synthesis.shapes.shapes import Shapes
     from synth.task import Task
 
-# The least distance along a rod is looked for at so many samples, which are drawn closer so often.
-_ROD_SAMPLES, _ROD_ZOOMS = 8, 3
+_ROD_SAMPLES = 8  # along a rod, where its least distance is looked for
+_ROD_ZOOMS = 3  # times that they are drawn closer
 
 
 def overlaps(
@@ -55,7 +55,7 @@ def overlaps(
     tube = turned(np.broadcast_to(tube[:, None], (*depth.shape, *tube.shape[1:])), theta1)
     ends = turned(np.stack(np.broadcast_arrays(end, end + rod), axis=-2), theta1)
     if shapes.places is not None:
-        tube, ends = shapes.in_task(tube), shapes.in_task(ends)
+        tube, ends = shapes.bases.in_task(tube), shapes.bases.in_task(ends)
     # What no link reaches is in the way of none.
     reach = (
         float(shapes.length.max(initial=0.0))
@@ -65,7 +65,7 @@ def overlaps(
     )
     p2 = np.array([[0.0, 0.0, robot.d12]])
     if shapes.places is not None:
-        p2 = shapes.in_task(np.broadcast_to(p2, (len(depth), 3)))
+        p2 = shapes.bases.in_task(np.broadcast_to(p2, (len(depth), 3)))
     for solid in (solid for solid in solids if solid.distance(p2).min(initial=np.inf) < reach):
         if is_up():
             break

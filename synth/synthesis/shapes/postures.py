@@ -8,13 +8,13 @@ long, and their components are needed one by one.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value
+from synth.arrays import FloatArray, frozen_value
 from synth.robot import into_turn
 
 if TYPE_CHECKING:
@@ -32,8 +32,7 @@ _TINY = 1e-12
 _NEAR_AXIS = 0.02
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class TargetsSeen:
     """Targets as joint 1 sees them, and the limits of the joints.
 
@@ -56,8 +55,8 @@ class TargetsSeen:
         rows = task.table.approaches
         if rows is not None:
             seen = np.broadcast_to(rows[:, 3:], (len(shapes.length), len(rows), 1))
-            rows = np.concatenate([rows[:, :3] @ shapes.base_rotation, seen], axis=-1)
-        return cls(shapes.seen(task.table.positions), task.robot.joint_limits, rows)
+            rows = np.concatenate([rows[:, :3] @ shapes.bases.rotation, seen], axis=-1)
+        return cls(shapes.bases.seen(task.table.positions), task.robot.joint_limits, rows)
 
     @classmethod
     def of(cls, task: Task, limits: JointLimits | None = None) -> TargetsSeen:
@@ -75,8 +74,7 @@ class TargetsSeen:
         return np.arctan2(self.positions[..., 1], self.positions[..., 0])
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Postures:
     """P5 of N shapes beside n targets each.
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
-from synth.geometry import rotation_of
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.robot import (
     ArcChains,
     Arm,
@@ -20,9 +19,10 @@ from synth.robot import (
     chain_points,
     random_curvatures,
 )
+from synth.synthesis.shapes.bases import Bases
 from synth.synthesis.shapes.columns import ARCS, BASE, BASE_NUMBERS, CURVATURES, D35, D45, LENGTH
 from synth.synthesis.shapes.limits import free_directions, free_lengths, into_limits
-from synth.synthesis.shapes.motion import motion_of_arm, motion_of_base
+from synth.synthesis.shapes.motion import motion_of_arm
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -35,8 +35,7 @@ _EQUAL = 1e-12  # of the whole length: by so little arcs of one length may diffe
 ARM_LENGTH = 0.5  # m; an axis 1 rad off puts P5 about this far off
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Shapes:
     """Shapes of a robot, each a row of unknowns; leading axes "..." are free.
 
@@ -44,7 +43,7 @@ class Shapes:
         robot: The hardware.
         unknowns: Shape (..., 9), with two more where the rigid link is free and six more where the base is:
             the curvatures (kx, ky) of the ARCS equal arcs in units of the largest one, the length, m; d35 and
-            d45, m; x, y, z, m, and roll, pitch and yaw of the base, rad.
+            d45, m; and the rows of `Bases`.
         places: Where the base may stand, if it is free.
     """
 
@@ -100,24 +99,10 @@ class Shapes:
             return np.full(self.length.shape, rigid.d35.lower), np.full(self.length.shape, rigid.d45.lower)
         return self.unknowns[..., D35], self.unknowns[..., D45]
 
-    @property
-    def base(self) -> FloatArray:
-        """The base's x, y, z, roll, pitch and yaw where it is free, shape (..., 6), m and rad."""
-        return self.unknowns[..., BASE]
-
     @cached_property
-    def base_rotation(self) -> FloatArray:
-        """Rotations from the base frames to the task frame where the base is free, shape (..., 3, 3)."""
-        return rotation_of(*np.moveaxis(self.base[..., 3:], -1, 0))
-
-    def seen(self, points: FloatArray) -> FloatArray:
-        """Return points of the task frame, shape (n, 3), m, in each base's own frame, shape (..., n, 3)."""
-        return np.asarray((points - self.base[..., None, :3]) @ self.base_rotation)
-
-    def in_task(self, points: FloatArray) -> FloatArray:
-        """Return points of the base frames, shape (N, ..., 3), m, in the task frame."""
-        flat = points.reshape(len(points), -1, 3) @ np.swapaxes(self.base_rotation, -1, -2)
-        return np.asarray((flat + self.base[:, None, :3]).reshape(points.shape))
+    def bases(self) -> Bases:
+        """Where the bases stand, if that is free."""
+        return Bases(self.unknowns[..., BASE])
 
     @property
     def bending(self) -> FloatArray:
@@ -147,9 +132,8 @@ class Shapes:
         arm = motion_of_arm(self.robot, self.unknowns, *self.rigid_links)
         if self.places is None:
             return arm
-        base = motion_of_base(self.base_rotation, self.base[:, 3:])
         whole = np.zeros((len(arm), arm.shape[1] + BASE_NUMBERS, self.unknowns.shape[1]))
-        whole[:, :-BASE_NUMBERS, :-BASE_NUMBERS], whole[:, -BASE_NUMBERS:, BASE] = arm, base
+        whole[:, :-BASE_NUMBERS, :-BASE_NUMBERS], whole[:, -BASE_NUMBERS:, BASE] = arm, self.bases.motion
         return whole
 
     @cached_property
@@ -204,7 +188,7 @@ class Shapes:
         shape = LinkShape(self.curvatures[index], np.full(ARCS, self.length[index] / ARCS))
         d35, d45 = self.rigid_links
         if self.places is not None:
-            base = self.places.pose(self.base[index])
+            base = self.places.pose(self.bases.rows[index])
         return Arm(self.robot, shape, float(d35[index]), float(d45[index]), base)
 
 

@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 
 # After so many steps each target may take the nearer branch of joint 2, wherever it is.
 _STEPS_ON_BRANCHES = 4
-_FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-3, 1e-9, 1e9
+_FIRST_DAMPING = 1e-3
+_LEAST_DAMPING = 1e-9
+_MOST_DAMPING = 1e9
 # Exponents of the misses, and from which share of the steps on: where the worst miss counts, a norm that is
 # smooth comes first, because its valleys are wide, and then one that is nearly the worst.
 _SQUARES = 2.0
@@ -31,10 +33,11 @@ _EXPONENTS = {
 }
 _LEVELLING_STEPS = 6  # with each of ever larger exponents
 _LEVELLING_DAMPING = 1e-4
-# Steps out of obstacles, what to keep from them, m, and the differences of unknowns that tell which way.
-_CLEARING, _MARGIN, _DIFFERENCE = 10, 4e-3, 1e-5
-# So many shapes with squared misses below this, m^2, are enough: the others need not arrive, too.
-_ENOUGH, _EXACT = 20, 1e-13
+_CLEARING = 10  # steps out of obstacles
+_MARGIN = 4e-3  # m, what to keep from these
+_DIFFERENCE = 1e-5  # of an unknown, which tells which way leads out
+_ENOUGH = 20  # shapes that meet all targets, after which the others need not arrive, too
+_EXACT = 1e-13  # m^2, of squared misses that count as that
 _TINY = 1e-30  # m^2
 
 

@@ -47,7 +47,7 @@ def refine(
     Args:
         task: The task.
         shapes: The starts, of shape (N,).
-        theta2: Angle of joint 2 at which each start shall meet each target, shape (N, n), rad, and stay on
+        theta2: Angle of joint 2 at which each start is to meet each target, shape (N, n), rad, and stay on
             that branch; by default the nearest one, which is looked for again from time to time.
         iterations: Number of steps; by default enough to arrive, mostly.
         near: Whether the starts were refined before: the norm whose valleys are the widest is left out.

@@ -39,7 +39,7 @@ def shapes_at_places(task: Task, places: BaseRange, seed: int) -> Shapes:
     shapes = shapes_at_random(task.robot, lowest, seed).at_places(places, rng)
     if not isinstance(task.floor, float):
         return shapes
-    return shapes.take(shapes.in_task(shapes.end[1])[:, 2] > task.floor)
+    return shapes.take(shapes.bases.in_task(shapes.end[1])[:, 2] > task.floor)
 
 
 def estimated_misses(task: Task, shapes: Shapes) -> FloatArray:
@@ -65,7 +65,7 @@ def estimated_misses(task: Task, shapes: Shapes) -> FloatArray:
     determinant = np.abs(m00 * m11 - m01 * m10)
     squared = np.einsum("ij,ij->i", centre, centre) + radius**2
     misses = np.empty((len(task.targets), len(radius)))
-    positions = task.positions_in_base if shapes.places is None else shapes.seen(task.table.positions)
+    positions = task.positions_in_base if shapes.places is None else shapes.bases.seen(task.table.positions)
     for row, (x, y, z) in enumerate(np.moveaxis(positions, (-2, -1), (0, 1))):
         height = z - centre[:, 2]
         beyond = x * x + y * y + z * z - squared

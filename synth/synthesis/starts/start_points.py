@@ -7,12 +7,11 @@ finds it nearly always, and looking at a shape is ten thousand times cheaper tha
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.robot import BaseRange
 from synth.synthesis.starts.exact_arms import exact_arms, nearest_to_exact_arms
 from synth.synthesis.starts.refined import relative_weights
@@ -35,26 +34,25 @@ if TYPE_CHECKING:
 
 
 _MOST = 40  # targets that are searched with
-# Shapes that are refined, half of them the best, half at random from so many of the best; and from how many
-# of the best fresh ones are drawn.
-_REFINED, _GOOD, _FRESH = 200, 4_000, 10_000
+_REFINED = 200  # shapes: half of them the best, half at random from the good ones
+_GOOD = 4_000  # the best of the screening, which knows nothing of the valleys
+_FRESH = 10_000  # the best, from which fresh ones are drawn
 _PER_DESIGN = 6  # shapes looked at near each exact design, where there are any
 # Misses below this, m, are as good as none for a start: the refinement sees to them.
 _NEAR = 3e-3
-# Starts whose link ends are nearer than this, m, count as one, an axis 1 rad apart for ARM_LENGTH, unless
-# the later one is better by more than this part.
-_DISTINCT, _BETTER = 0.03, 0.01
-# Starts whose mean squared misses differ by less than this part are of a kind: so many are enough.
-_ALIKE, _OF_A_KIND = 2e-3, {Objective.LEAST_SQUARES: 2, Objective.MINIMAX: 6}
-# Misses below this, m, and below this part of the tightest tolerance are all as good: then the gentler bend
-# goes first.
-_SETTLED, _SETTLED_PART = 1e-5, 0.02
+# Starts whose link ends are nearer than this, m, count as one, an axis 1 rad apart for ARM_LENGTH.
+_DISTINCT = 0.03
+_BETTER = 0.01  # part by which the later of such must be better to count all the same
+_ALIKE = 2e-3  # part by which the mean squared misses of starts differ that are of a kind
+_OF_A_KIND = {Objective.LEAST_SQUARES: 2, Objective.MINIMAX: 6}  # so many of these are enough
+# Misses below both of these are all as good: then the gentler bend goes first.
+_SETTLED = 1e-5  # m
+_SETTLED_PART = 0.02  # of the tightest tolerance
 # Of each step; where the worst miss counts, the cost says less of what the nonlinear program will reach.
 _MOST_STARTS = {Objective.LEAST_SQUARES: 12, Objective.MINIMAX: 24}
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Start:
     """A shape to polish.
 
@@ -140,7 +138,7 @@ class _Distinct:
     def of(self, refined: Refined) -> Iterator[Start]:
         """Yield starts in the order of their costs, m^2, except those that are nearly one yielded before."""
         shapes, base, yielded = refined.shapes, self._task.base, 0
-        poses = shapes.poses if shapes.places is None else np.hstack([shapes.poses, shapes.base])
+        poses = shapes.poses if shapes.places is None else np.hstack([shapes.poses, shapes.bases.rows])
         as_good = min(_SETTLED, _SETTLED_PART * float(self._task.tolerances.min())) ** 2
         cost = np.maximum(refined.cost, as_good)
         # Shapes that miss alike are mostly one surface, bent in several ways.

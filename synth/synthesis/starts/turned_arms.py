@@ -26,8 +26,9 @@ if TYPE_CHECKING:
     from synth.watch import Watch
 
 
-# Steps with a part, and then with all.
-SAMPLE, _STEPS, _STEPS_WITH_ALL = 2000, 8, 2
+SAMPLE = 2000  # targets that are a part of many
+_STEPS = 8  # with a part
+_STEPS_WITH_ALL = 2  # and then with all
 
 
 def refined_for_all(task: Task, arm: Arm, watch: Watch) -> Arm:

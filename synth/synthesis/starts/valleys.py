@@ -14,12 +14,12 @@ better one that is so narrow that all of them missed it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.synthesis.shapes import overlaps
 from synth.synthesis.starts.refined import Refined
 from synth.synthesis.starts.refinement import cleared, level, refine
@@ -35,21 +35,24 @@ if TYPE_CHECKING:
     from synth.synthesis.shapes import Shapes
     from synth.task import Task
 
-# Rounds of the three steps; shapes kept; of these the parents, which miss differently; those of half of the
-# children; and children of each.
-_ROUNDS, _KEPT, _PARENTS, _BEST_PARENTS, _CHILDREN = 10, 400, 20, 2, 10
-# Sizes of the bends, in units of the largest curvature; lengths change by a twentieth of that, m.
-_SIZES, _LENGTHS = (0.03, 0.1, 0.3), 0.05
+_ROUNDS = 10  # of the three steps
+_KEPT = 400  # shapes
+_PARENTS = 20  # of these, which miss differently
+_BEST_PARENTS = 2  # to whom half of the children go
+_CHILDREN = 10  # of each
+_SIZES = (0.03, 0.1, 0.3)  # of the bends, in units of the largest curvature
+_LENGTHS = 0.05  # m for a bend of that size, by which lengths change
 _MOST_SWAPPED = 2  # targets that get another angle of joint 2
-# Iterations: of bent shapes; of swapped ones, at first on the branches they were given; of fresh ones, the
-# best quarter of which goes on.
-_BENT, _SWAPPED, _FRESH = 10, (4, 8), (5, 15)
-_GO_ON = 4
+_BENT = 10  # iterations of bent shapes
+_SWAPPED = (4, 8)  # of swapped ones, at first on the branches they were given
+_FRESH = (5, 15)  # of fresh ones, of which only some go on
+_GO_ON = 4  # one in so many, the best
 _ALIKE = 0.01  # costs that differ by less than this part are those of one valley, bent in several ways
-# It is enough if so many shapes meet all targets, to this part of the tightest tolerance; or if such a share
-# of the fresh shapes, and so many of them, ended within this part of the least cost.
-_ENOUGH, _EXACT = 5, 2e-3
-_AGREEING, _SAME = 0.05, 1e-3
+# It is enough if so many shapes meet all targets, or if so many fresh ones, and such a share, end alike.
+_ENOUGH = 5
+_EXACT = 2e-3  # of the tightest tolerance: a miss below meets a target
+_AGREEING = 0.05
+_SAME = 1e-3  # part of the least cost by which those differ at most
 # But with a cost below this, m^2, the workspace may have two sheets so close together that most shapes end
 # with some targets on the wrong one.
 _SHEETS = 4e-6
@@ -59,8 +62,7 @@ _OF_A_KIND = 4
 _LEVELLED = 48  # valleys whose least worst miss is looked for
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Valleys:
     """What is known of the valleys of a task.
 

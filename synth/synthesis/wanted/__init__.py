@@ -2,23 +2,19 @@
 
 from synth.synthesis.wanted.design import Design
 from synth.synthesis.wanted.displaced import Displacements, misses_displaced, rotations
-from synth.synthesis.wanted.forgiveness import HAND_PLACES, HAND_TURNS, Forgiveness, hand_forgiveness
-from synth.synthesis.wanted.judging import judged
+from synth.synthesis.wanted.forgiveness import Forgiveness
+from synth.synthesis.wanted.judging import judged, ways_and_forgiveness
 from synth.synthesis.wanted.motion import Motion
 from synth.synthesis.wanted.ranking import best_of, leaves_no_wish, objective, preferred_designs
 from synth.synthesis.wanted.wanted_shapes import wished
-from synth.synthesis.wanted.ways import MOST_MOTIONS, motions
+from synth.synthesis.wanted.ways import motions
 
 __all__ = [
-    "HAND_PLACES",
-    "HAND_TURNS",
-    "MOST_MOTIONS",
     "Design",
     "Displacements",
     "Forgiveness",
     "Motion",
     "best_of",
-    "hand_forgiveness",
     "judged",
     "leaves_no_wish",
     "misses_displaced",
@@ -26,5 +22,6 @@ __all__ = [
     "objective",
     "preferred_designs",
     "rotations",
+    "ways_and_forgiveness",
     "wished",
 ]

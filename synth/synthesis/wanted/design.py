@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 
 if TYPE_CHECKING:
     from synth.robot import Arm
@@ -14,8 +13,7 @@ if TYPE_CHECKING:
     from synth.synthesis.wanted.motion import Motion
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Design:
     """A shape of the robot and what the independent check says of it.
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.robot import Kinematics
 from synth.synthesis.shapes import Postures, TargetsSeen
 
@@ -15,8 +14,7 @@ if TYPE_CHECKING:
     from synth.robot import Arm
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Displacements:
     """How far the ends of links are from where they should be.
 

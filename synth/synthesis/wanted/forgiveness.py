@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.robot import Kinematics
+from synth.rounding import Unit, rounded_down, rounded_up
 from synth.synthesis.shapes import Postures, TargetsSeen
 from synth.synthesis.wanted.displaced import Displacements, rotations
 
@@ -26,11 +27,12 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 # The error of a hand as published, m, and the turn that goes with it, rad: means and deviations.
-HAND_PLACES, HAND_TURNS = (9.64e-3, 2.06e-3), (math.radians(4.0), math.radians(1.2))
-_OFF, _TURNED = NormalDist(*HAND_PLACES), NormalDist(*HAND_TURNS)
+_OFF = NormalDist(9.64e-3, 2.06e-3)
+_TURNED = NormalDist(math.radians(4.0), math.radians(1.2))
 _ERRORS = 128
 # Of more targets so many are asked, evenly along the list: the rest hardly changes the worst.
 _MOST_TARGETS = 200
+_NO_HAND = 0.02  # a chance below is none to count on, and too small to be told from so many tries
 _TOGETHER = 20_000  # postures, so that the arrays stay in the cache
 
 
@@ -45,6 +47,20 @@ class Forgiveness:
 
     expected_worst_miss: float
     chance: float
+
+    def describe(self) -> str:
+        """Return what becomes of the task when a hand as published bends the link, and nobody corrects it."""
+        hand = (
+            f"a hand as published ({1e3 * _OFF.mean:.1f} ± {1e3 * _OFF.stdev:.1f} mm, "
+            f"{math.degrees(_TURNED.mean):.0f} ± {math.degrees(_TURNED.stdev):.1f} deg)"
+        )
+        miss = f"expect a worst miss of {rounded_up(self.expected_worst_miss)} mm"
+        rest = f"joints recomputed from the measured arm; {miss}. So measure, and correct until it is right."
+        if self.chance < _NO_HAND:
+            never = "No hand holds this at the first try"
+            return f"{never}: {hand} meets every target in less than 2 % of tries, {rest}"
+        share = min(int(rounded_down(self.chance, Unit.PERCENT, 0)), 99)
+        return f"At the first try {hand} meets every target in about {share} % of tries, {rest}"
 
 
 @cache

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +13,7 @@ from synth.synthesis.check import verify
 from synth.synthesis.wanted.figures import Figures
 from synth.synthesis.wanted.forgiveness import hand_forgiveness
 from synth.synthesis.wanted.margins import Margins
-from synth.synthesis.wanted.ways import MOST_MOTIONS, routed
+from synth.synthesis.wanted.ways import MOST_MOTIONS, motions, routed
 from synth.watch import never
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
     from synth.robot import LinkShape
     from synth.synthesis.wanted.design import Design
+    from synth.synthesis.wanted.forgiveness import Forgiveness
     from synth.synthesis.wanted.motion import Motion
     from synth.task import Task
 
@@ -54,6 +56,25 @@ def judged(task: Task, design: Design, is_up: Callable[[], bool] = never) -> Des
         change=None if task.current is None else _change(arm.shape, task.current),
     )
     return replace(design, ways=ways, figures=figures)
+
+
+@lru_cache(maxsize=8)
+def ways_and_forgiveness(task: Task, design: Design) -> tuple[tuple[Motion, ...], Forgiveness | None]:
+    """Return what a person is told of a shape beside its misses, looked for if it was not judged: but once.
+
+    Args:
+        task: The task.
+        design: The shape, verified for it.
+
+    Returns:
+        How the arm gets from each target to the next, nothing of many; and what becomes of the task after a
+        hand placed the link. For a shape that misses a target neither.
+    """
+    check, figures = design.verification, design.figures
+    if not check.found:
+        return (), None
+    ways = motions(task, design) if len(task.targets) <= MOST_MOTIONS else ()
+    return ways, figures.forgiveness if figures else hand_forgiveness(task, design.arm, check.joints)
 
 
 def _change(shape: LinkShape, present: LinkShape) -> float:

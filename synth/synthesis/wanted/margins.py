@@ -19,10 +19,12 @@ if TYPE_CHECKING:
     from synth.robot import Arm, Robot
     from synth.task import Task
 
-# What should be left: of a joint, rad; of the link's length, m; of bend radius and total bend, as a share; to
-# obstacles, m. Of a narrow range no more than a part at each end.
-_JOINT, _LENGTH, _BEND, _CLEARANCE = math.radians(5.0), 5e-3, 0.05, 5e-3
-_PART_OF_RANGE = 0.25
+# What should be left.
+_JOINT = math.radians(5.0)  # of a joint, at each limit
+_LENGTH = 5e-3  # m, of the link's length
+_BEND = 0.05  # of bend radius and total bend, as a share
+_CLEARANCE = 5e-3  # m, to obstacles
+_PART_OF_RANGE = 0.25  # of a narrow range, at each end no more than this
 _ROUNDING = 1e-6  # of a margin
 
 
@@ -36,7 +38,7 @@ class Margins:
         length: Of the link's length from its limits, m; infinite if it is fixed.
         bend_radius: Of the smallest bend radius above its limit, m.
         total_bend: Of the total bend below its limit, rad.
-        clearance: Of the arm from obstacles at the targets, m; told up to 0.1 m.
+        clearance: Of the arm from obstacles at the targets, m; at most 0.1 m is reported.
     """
 
     joint1: float

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Motion:
     """How the arm gets from one target to the next.
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.synthesis.shapes import Postures, Shapes, TargetsSeen, overlaps
 from synth.synthesis.wanted.forgiveness import misses_after_a_hand
 from synth.synthesis.wanted.margins import Margins
@@ -27,8 +26,7 @@ _PART_OF_TOLERANCE = 0.9
 _DISTINCT = 0.03  # m, between link ends with axes of ARM_LENGTH
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Pool:
     """Shapes within the tolerances, the most wanted first.
 

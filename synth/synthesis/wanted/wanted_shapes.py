@@ -36,26 +36,29 @@ if TYPE_CHECKING:
     from synth.robot import Arm, Robot
     from synth.task import Task
 
-# Random shapes; so many of them are led to the targets, half of them the best, half the calmest of some that
-# are drawn from the good ones.
-_SHAPES, _LED, _GOOD, _ASKED = 5_000, 60, 500, 200
-# Where joint 2 is kept in a part of its range as wide as a calm swing: shapes led, iterations, and where the
-# parts lie, 0 at the beginning of the range, 1 at its end.
-_LED_CALMER, _ITERATIONS_CALMER = 300, 30
-_PARTS = (0.25, 0.75, 0.5, 0.0, 1.0)
+_SHAPES = 5_000  # at random
+_LED = 60  # of these, led to the targets: half the best, half the calmest of some of the good ones
+_GOOD = 500  # best ones, from which those are drawn
+_ASKED = 200  # of the good ones, whose calm is looked at
+# Where joint 2 is kept in a part of its range as wide as a calm swing:
+_LED_CALMER = 300  # shapes that are led there
+_ITERATIONS_CALMER = 30
+_PARTS = (0.25, 0.75, 0.5, 0.0, 1.0)  # where it lies, 0 at the beginning of the range, 1 at its end
 _FEW_TARGETS = 8  # that are moved to one after the other
 _FROM_KNOWN = 20  # bent ones of those that are known
 _PER_DESIGN = 3  # shapes looked at near each exact design, where there are any
 _FAR = 0.3  # m; misses are compared up to here
-_ITERATIONS, _ITERATIONS_AGAIN = 12, 6
-# Rounds of bending; shapes that are bent, and how many come of them; sizes of the bends in units of the
-# largest curvature; lengths change by a twentieth of that, m.
-_ROUNDS, _BENT, _VARIED, _SIZES, _LENGTHS = 24, 10, 50, (0.03, 0.1, 0.3, 0.6), 0.05
-# So many rounds that gain next to nothing in the first columns of `preferences` are the last.
-_PATIENCE, _COUNTS = 3, 4
-# Bent shapes are led beside the targets, by up to this part of the tolerances: else these were of no use. Of
-# tolerances below this, m, there is nothing to be had: such targets are met exactly.
-_BESIDE, _TIGHT = 0.7, 1e-3
+_ITERATIONS = 12  # of random shapes
+_ITERATIONS_AGAIN = 6  # of bent ones, which are near already
+_ROUNDS = 24  # of bending, at most
+_BENT = 10  # shapes that are bent, the best
+_VARIED = 50  # shapes that come of them
+_SIZES = (0.03, 0.1, 0.3, 0.6)  # of the bends, in units of the largest curvature
+_LENGTHS = 0.05  # m for a bend of that size, by which lengths change
+_PATIENCE = 3  # rounds that gain next to nothing, after which there is no other
+_COUNTS = 4  # first columns of `preferences`, in which that is asked
+_BESIDE = 0.7  # of the tolerances, by which bent shapes are led beside the targets: else these were of no use
+_TIGHT = 1e-3  # m; targets of smaller tolerances are met exactly: nothing is gained by using those up
 _EXACTLY = 0.02  # of its tolerance a miss may take where targets are met exactly
 
 
@@ -111,7 +114,7 @@ def _searched(
 
 
 def _is_tight(task: Task) -> bool:
-    """Whether there is nothing to be had of the tolerances, so that targets are met exactly."""
+    """Whether nothing is gained by using up the tolerances, so that targets are met exactly."""
     return float(task.tolerances.min()) < _TIGHT
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.checks import refuse_unless
-from synth.robot import ArmBody, turned
+from synth.robot import ArmBody, clear_of_obstacles, clear_of_tube, turned
 from synth.synthesis.check import joints_reaching, seen_by
 from synth.synthesis.wanted.design import Design
 from synth.synthesis.wanted.margins import joint_shortfalls
@@ -37,8 +37,8 @@ _GRID = (91, 64)
 _SAMPLES, _FEW = 24, 8  # one of so many joint angles on a way tells mostly that it is not clear
 _MARGINS = (0.02, 0.008, 0.003)
 _STEP = 0.02  # rad, between postures that are looked at when a way is straightened
-# What a missing way, and a posture with no margin of a joint, are worth in travel, rad: more than any ways.
-_NO_WAY, _CRAMPED = 1e6, 1e3
+_NO_WAY = 1e6  # rad of travel that a missing way is worth: more than any ways
+_CRAMPED = 1e3  # rad, likewise a posture with no margin of a joint: less than a way
 
 
 def motions(task: Task, design: Design) -> tuple[Motion, ...]:
@@ -147,7 +147,7 @@ class _Surroundings:
         clear = self._clear_of_itself(start[:, 1], end[:, 1])
         some = np.flatnonzero(clear)
         if self._solids and len(some):
-            least = self._body.from_obstacles(start[some], self._solids, end=end[some], enough=0.0)
+            least = clear_of_obstacles(self._body, start[some], self._solids, end=end[some], enough=0.0)
             clear[some] = least.min(axis=(1, 2)) >= self._body.clear
         return clear
 
@@ -156,7 +156,7 @@ class _Surroundings:
         # Mostly all is clear between the least and the largest angle: one question in place of n.
         whole = np.array([min(start.min(), end.min())]), np.array([max(start.max(), end.max())])
         for ways in (whole, (start, end)):
-            least = np.minimum(self._body.rod_from_tube(*ways, enough=0.0), self._over_floor(*ways))
+            least = np.minimum(clear_of_tube(self._body, *ways, enough=0.0), self._over_floor(*ways))
             if (least >= self._body.clear).all():
                 return np.ones(len(start), dtype=np.bool_)
         return np.asarray(least >= self._body.clear)

@@ -1,50 +1,18 @@
-"""What a synthesis found: always returned, whatever it found."""
+"""What a synthesis found, whatever it found, as plain data."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
-from synth.arrays import compared_by_value
-from synth.errors import SynthError
-from synth.sentences import SentenceEnum
-from synth.synthesis.check import TargetResult, target_results
+from synth.arrays import frozen_value
+from synth.synthesis.solution.message import Status
 
 if TYPE_CHECKING:
-    from synth.robot import Arm
     from synth.synthesis.bound import Bound
     from synth.synthesis.wanted import Design
     from synth.task import Task
     from synth.watch import Timing
-
-
-class Status(SentenceEnum):
-    """How a synthesis ended."""
-
-    FOUND = "found", "every target is within its tolerance"
-    BEST_EFFORT = "best_effort", "no shape was found that reaches every target"
-    PROVEN_IMPOSSIBLE = "proven_impossible", "no shape of this robot can do the task"
-    LIMIT = "limit", "stopped before the search was complete"
-    FAILED = "failed", "the solver broke down"
-
-    def told(self, *, with_shape: bool) -> str:
-        """Return the sentence, with what the shape shown is, if there is one."""
-        if with_shape and self in (Status.BEST_EFFORT, Status.LIMIT, Status.PROVEN_IMPOSSIBLE):
-            return f"{self.sentence}; what follows is of the nearest shape found"
-        return self.sentence
-
-
-class NotFoundError(SynthError):
-    """Use of a shape that was not found.
-
-    Attributes:
-        solution: The whole result, with the reason.
-    """
-
-    def __init__(self, solution: Solution) -> None:
-        super().__init__(solution.message)
-        self.solution = solution
 
 
 @dataclass(frozen=True)
@@ -68,10 +36,9 @@ class Release:
     task: Task
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
-class Solution:
-    """The result of a synthesis.
+@frozen_value
+class Outcome:
+    """What a synthesis found, and how it ended.
 
     Attributes:
         task: What was asked.
@@ -116,42 +83,3 @@ class Solution:
     def found(self) -> bool:
         """Whether every target is within its tolerance, by the independent check."""
         return self.status is Status.FOUND
-
-    @property
-    def best(self) -> Design:
-        """The best shape.
-
-        Raises:
-            NotFoundError: There is none.
-        """
-        if not self.designs:
-            raise NotFoundError(self)
-        return self.designs[0]
-
-    @property
-    def robot(self) -> Arm:
-        """The robot in the best shape, with its forward and inverse kinematics.
-
-        Raises:
-            NotFoundError: There is none.
-        """
-        return self.best.arm
-
-    @cached_property
-    def targets(self) -> tuple[TargetResult, ...]:
-        """What becomes of each target in the best shape.
-
-        Raises:
-            NotFoundError: There is none.
-        """
-        return target_results(self.task, self.best.arm, self.best.verification)
-
-    def or_raise(self) -> Solution:
-        """Return this solution if it was found.
-
-        Raises:
-            NotFoundError: It was not.
-        """
-        if not self.found:
-            raise NotFoundError(self)
-        return self

@@ -2,25 +2,39 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.errors import SynthError
 from synth.rounding import Unit, rounded_up
+from synth.sentences import SentenceEnum
 from synth.synthesis.starts import exact_arms
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from synth.synthesis.check import Verification
-    from synth.synthesis.solution import Solution, Status
     from synth.synthesis.wanted import Design
     from synth.task import Task
 
 _REACHED_WITHOUT_WAY = "every target is reached, but"
 _REASONS = 3  # of a kind that are told
+
+
+class Status(SentenceEnum):
+    """How a synthesis ended."""
+
+    FOUND = "found", "every target is within its tolerance"
+    BEST_EFFORT = "best_effort", "no shape was found that reaches every target"
+    PROVEN_IMPOSSIBLE = "proven_impossible", "no shape of this robot can do the task"
+    LIMIT = "limit", "stopped before the search was complete"
+    FAILED = "failed", "the solver broke down"
+
+    def told(self, *, with_shape: bool) -> str:
+        """Return the sentence, with what the shape shown is, if there is one."""
+        if with_shape and self in (Status.BEST_EFFORT, Status.LIMIT, Status.PROVEN_IMPOSSIBLE):
+            return f"{self.sentence}; what follows is of the nearest shape found"
+        return self.sentence
 
 
 def message(task: Task, status: Status, designs: Sequence[Design], reasons: Sequence[str]) -> str:
@@ -44,27 +58,12 @@ def ending(status: Status, designs: Sequence[Design]) -> str:
     return f"{_REACHED_WITHOUT_WAY} {'; '.join([*no_way[:_REASONS], *more])}"
 
 
-def showing(solution: Solution, number: int) -> Solution:
-    """Return a solution that begins with another of its shapes: all that is told is then of that one.
-
-    Args:
-        solution: What a synthesis found, its best shape first.
-        number: Which shape, counted from 1, the best.
-
-    Raises:
-        SynthError: There are not so many.
-    """
-    designs, count = solution.designs, len(solution.designs)
-    if not 1 <= number <= count:
-        are = (
-            "is no shape"
-            if not count
-            else f"{'is 1 shape' if count == 1 else f'are {count} distinct shapes'}"
-        )
-        raise SynthError(f"there is no shape {number} to show: there {are} of this task")
-    ordered = (designs[number - 1], *designs[: number - 1], *designs[number:])
-    told = message(solution.task, solution.status, ordered, solution.reasons)
-    return replace(solution, designs=ordered, shape=number, message=told)
+def note_on_ways(designs: Sequence[Design], *, interrupted: bool) -> str:
+    """Return that ways may be missing for lack of time alone; nothing if that cannot be."""
+    missing = designs and any(not way.found for way in designs[0].ways)
+    if not (missing and interrupted):
+        return ""
+    return "the time was up before all ways from target to target had been looked for"
 
 
 def why_no_better(task: Task, designs: Sequence[Design], blocked: Sequence[Design]) -> tuple[str, ...]:
