@@ -112,14 +112,6 @@ class Run:
         if watch.interrupted:
             self.notes.append("the proof was stopped early: more time may prove more")
 
-    def _bound_for(self, designs: tuple[Design, ...]) -> Bound | None:
-        """Return the bound with what was found for all targets: that of a part holds for all of them."""
-        if self.bound is None or self.part is self.task:
-            return self.bound
-        relative = [float(np.max(d.verification.misses / self.task.tolerances)) for d in designs]
-        best = self.bound.tightest_tolerance * min(relative, default=math.inf)
-        return replace(self.bound, best_found=best)
-
     def solution(self) -> Solution:
         """Rank what was found and say what it is worth."""
         whole = WholeTask(self.task)
@@ -149,7 +141,7 @@ class Run:
             designs,
             self.search.starts,
             self.watch.timing(),
-            self._bound_for(designs),
+            self.bound if self.part is self.task else bound_of_all(self.bound, task, designs),
             notes=(*self.notes, *filter(None, [whole.note, no_time])),
             breakdown="".join(traceback.format_exception(self.broke_off)) if self.broke_off else "",
         )
@@ -188,3 +180,11 @@ class Run:
         cut_short = self.watch.interrupted and not self.complete
         status = Status.LIMIT if cut_short or whole.unseen else Status.BEST_EFFORT
         return status, why_no_better(self.task, designs, self.search.polishing.blocked)
+
+
+def bound_of_all(bound: Bound | None, task: Task, designs: tuple[Design, ...]) -> Bound | None:
+    """Return a bound that was proven for a part of the targets, with what was found for all of them."""
+    if bound is None:
+        return None
+    relative = [float(np.max(design.verification.misses / task.tolerances)) for design in designs]
+    return replace(bound, best_found=bound.tightest_tolerance * min(relative, default=math.inf))

@@ -8,6 +8,7 @@ import numpy as np
 
 from synth.arrays import FloatArray, frozen_value
 from synth.geometry import rotation_of
+from synth.synthesis.shapes.columns import BASE_NUMBERS
 
 
 @frozen_value
@@ -33,6 +34,13 @@ class Bases:
         """Return points of N base frames, shape (N, ..., 3), m, in the task frame."""
         flat = points.reshape(len(points), -1, 3) @ np.swapaxes(self.rotation, -1, -2)
         return np.asarray((flat + self.rows[:, None, :3]).reshape(points.shape))
+
+    def motion_beside(self, of_arm: FloatArray) -> FloatArray:
+        """Return the motion of arms, shape (N, k, unknowns), and behind it that of their bases."""
+        count, rows, columns = of_arm.shape
+        whole = np.zeros((count, rows + BASE_NUMBERS, columns + BASE_NUMBERS))
+        whole[:, :rows, :columns], whole[:, rows:, columns:] = of_arm, self.motion
+        return whole
 
     @property
     def motion(self) -> FloatArray:

@@ -20,7 +20,7 @@ from synth.robot import (
     random_curvatures,
 )
 from synth.synthesis.shapes.bases import Bases
-from synth.synthesis.shapes.columns import ARCS, BASE, BASE_NUMBERS, CURVATURES, D35, D45, LENGTH
+from synth.synthesis.shapes.columns import ARCS, BASE, CURVATURES, D35, D45, LENGTH
 from synth.synthesis.shapes.limits import free_directions, free_lengths, into_limits
 from synth.synthesis.shapes.motion import motion_of_arm
 
@@ -130,11 +130,7 @@ class Shapes:
         its turn, in its own frame. For one leading axis.
         """
         arm = motion_of_arm(self.robot, self.unknowns, *self.rigid_links)
-        if self.places is None:
-            return arm
-        whole = np.zeros((len(arm), arm.shape[1] + BASE_NUMBERS, self.unknowns.shape[1]))
-        whole[:, :-BASE_NUMBERS, :-BASE_NUMBERS], whole[:, -BASE_NUMBERS:, BASE] = arm, self.bases.motion
-        return whole
+        return arm if self.places is None else self.bases.motion_beside(arm)
 
     @cached_property
     def centreline(self) -> FloatArray:
