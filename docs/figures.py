@@ -1,13 +1,14 @@
-"""Draws the pictures of README and docs: `python docs/figures.py`, from the project's root."""
+"""Draws all pictures of README and docs: `python docs/figures.py`, from the project's root."""
 
 from pathlib import Path
 
 import numpy as np
+from figure_of_revolution import revolution_picture
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from synth import PRESETS, Solution, link_to_pose, load_task, solve
-from synth.export import draw_sheet
+from synth.export import draw_robot, draw_sheet
 from synth.guide import make_guide
 from synth.measurement import nearest_realisable
 from synth.measurement.distances.reading import load_measurements
@@ -23,6 +24,14 @@ MARKERS = {
     "scara": ("^", "#009e73", "SCARA"),
     "spherical": ("D", "#cc79a7", "spherical"),
 }
+
+
+def robot_picture() -> Figure:
+    """Draw the robot with the names of its points, axes, angles and distances."""
+    figure = Figure(figsize=(7.5, 7.4))
+    FigureCanvasAgg(figure)
+    draw_robot(figure.add_axes((0.0, 0.0, 1.0, 1.0)), 10.0, whole=True)
+    return figure
 
 
 def workspace_picture(solution: Solution) -> Figure:
@@ -123,7 +132,9 @@ def reconfiguration_picture() -> Figure:
 
 
 def main() -> None:
-    """Draw the task of the README, its sheet, and what the link can do."""
+    """Draw the robot, why workspaces are round, a task and its sheet, and what the link can do."""
+    robot_picture().savefig(ROOT / "docs" / "pictures" / "robot.png", dpi=110)
+    revolution_picture().savefig(ROOT / "docs" / "pictures" / "revolution.png", dpi=110)
     reconfiguration_picture().savefig(ROOT / "docs" / "reconfiguration.png", dpi=110)
     solution = solve(load_task(TASK))
     figure = workspace_picture(solution)
