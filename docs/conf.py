@@ -29,10 +29,12 @@ napoleon_google_docstring, napoleon_numpy_docstring = True, False
 autodoc_typehints = "description"
 autodoc_typehints_format = "short"
 autodoc_member_order = "bysource"
-nitpicky = False
+suppress_warnings = ["ref.python"]  # `shape` is a field of two classes, and a word
 html_theme = "pydata_sphinx_theme"
 html_title = "synth"
 html_static_path = ["static"]
+html_favicon = "static/icon.svg"
+html_context = {"default_mode": "auto"}
 html_css_files = ["site.css"]
 html_show_sourcelink = False
 html_copy_source = False
@@ -47,6 +49,12 @@ html_theme_options = {
 }
 
 
+def keep_bars(_app: object, _what: str, _name: str, _it: object, _options: object, lines: list[str]) -> None:
+    """Keep |x| in docstrings what it is: an absolute value, no substitution."""
+    lines[:] = [line.replace("|", "\\|") for line in lines]
+
+
 def setup(app: object) -> None:
     """Make the gallery before the pages are read."""
     app.connect("builder-inited", lambda _app: write_gallery())  # type: ignore[attr-defined]
+    app.connect("autodoc-process-docstring", keep_bars, priority=400)  # type: ignore[attr-defined]
