@@ -25,6 +25,7 @@ source_suffix = {".md": "markdown"}
 exclude_patterns = ["pictures/*.md"]
 myst_enable_extensions = ["colon_fence", "dollarmath"]
 myst_heading_anchors = 3
+highlight_language = "none"  # a block without a language is a sketch
 napoleon_google_docstring, napoleon_numpy_docstring = True, False
 autodoc_typehints = "description"
 autodoc_typehints_format = "short"

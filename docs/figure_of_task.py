@@ -1,4 +1,4 @@
-"""The picture of a solved task: the arm at its first target, its workspace cut open, targets, obstacles, floor."""
+"""The picture of a solved task: the arm at its first target, its workspace cut open, targets, obstacles."""
 
 from __future__ import annotations
 

@@ -29,7 +29,8 @@ from oracle import OracleArm  # noqa: E402 - after the path
 # From simple to hard; what is not named here comes last.
 ORDER = (
     "two-crates", "one-target", "three-targets", "four-targets", "twelve-targets", "moved-base", "own-robot",
-    "plane", "sphere", "puma-sphere", "free-rigid-link", "through-the-window", "out-of-reach", "three-on-the-axis",
+    "plane", "sphere", "puma-sphere", "free-rigid-link", "through-the-window",
+    "out-of-reach", "three-on-the-axis",
 )  # fmt: skip
 QUANTITIES = {
     "worst_miss": "worst miss, mm",
@@ -63,7 +64,7 @@ def command(name: str) -> list[str]:
 
 
 def run(name: str) -> Run:
-    """Run the command of a problem as its README gives it, files left out; refuse an answer that is not the known one."""
+    """Run the command of a problem's README, files left out; refuse an answer that is not the known one."""
     arguments = [each for each in command(name) if each not in {"-o", "out"}]
     started = time.perf_counter()
     answer = CliRunner().invoke(synth_command, arguments)
@@ -81,6 +82,9 @@ def story(name: str) -> dict[str, str]:
     text = re.sub(r"\]\(\.\./([\w-]+)/README\.md\)", r"](\1.md)", text)
     text = text.replace("](../../docs/", "](../")
     title, _, rest = text.removeprefix("# ").partition("\n")
+    rest = re.sub(
+        r"^```\n.*?^```\n", "", rest, flags=re.MULTILINE | re.DOTALL
+    )  # the sketch: there is a picture
     first, *others = re.split(r"^## ", rest, flags=re.MULTILINE)
     sections = dict(section.split("\n", 1) for section in others)
     return {"title": title, "": first.strip(), **{key: text.strip() for key, text in sections.items()}}
@@ -113,7 +117,7 @@ def page(name: str, made: Run) -> str:
 
 ## The task
 
-{{download}}`task.yaml <../../problems/{name}/task.yaml>`, in a copy of the repository `problems/{name}/task.yaml`:
+{{download}}`task.yaml <../../problems/{name}/task.yaml>`, or `problems/{name}/task.yaml` in a copy of the repository:
 
 ```yaml
 {(PROBLEMS / name / "task.yaml").read_text(encoding="utf-8").rstrip()}
@@ -135,7 +139,7 @@ It took {made.seconds:.1f} s when this page was made.
 
 {check_table(facts, made.solution)}
 
-{facts.source.strip()} `tests/test_problems.py` compares the answer with this, by kinematics of its own, for three seeds.
+{facts.source.strip()} `tests/test_problems.py` compares the answer with this for three seeds, by kinematics of its own.
 
 :::{{dropdown}} Why the answer must be what it is
 {told["Why the answer must be what it is"]}
@@ -166,8 +170,8 @@ def index(cards: list[str]) -> str:
     """Return the page with the grid of all problems."""
     return f"""# Gallery
 
-Each task here was solved when these pages were made; its answer is known beforehand, by a small theorem or by the
-shape that its targets were made with, and compared. From simple to hard, the impossible last.
+Each task here was solved when these pages were made; its answer is known beforehand, by a small theorem or by
+the shape that its targets were made with, and compared. From simple to hard, the impossible last.
 
 :::::{{grid}} 1 2 3 3
 :gutter: 3

@@ -21,16 +21,22 @@ from synth.task.robot_schema import RobotFile
 from synth.task.schema import TaskFile
 
 REFERENCE = Path(__file__).parent / "reference"
-LENGTHS = ["position", "tolerance", "center", "radius", "size", "from", "to", "length", "P1", "P2", "P3", "P4", "P5", "d12", "d13", "d14", "d15", "d23", "d24", "d25", "d34", "d35", "d45", "floor", "min_bend_radius", "diameter", "tip_offset", "rounding", "sigma"]  # fmt: skip
+LENGTHS = [
+    "position", "tolerance", "center", "radius", "size", "from", "to", "length", "P1",
+    "P2", "P3", "P4", "P5", "d12", "d13", "d14", "d15", "d23",
+    "d24", "d25", "d34", "d35", "d45", "floor", "min_bend_radius", "diameter", "tip_offset",
+    "rounding", "sigma",
+]  # fmt: skip
 UNITS = (
     dict.fromkeys(LENGTHS, "length")
     | dict.fromkeys(("yaw_deg", "joint1_deg", "base", "second", "max_total_bend_deg"), "deg")
     | {"curvature": "1/length"}
 )
-PLAIN = (  # keys of words, counts and parts, which have no unit
-    "synth name length_unit robot targets weight surface points topology objective obstacles sphere box capsule current "
-    "arcs markers link rigid_link joint_limits_deg intended distances configurations"
-).split()  # fmt: skip
+PLAIN = [  # keys of words, counts and parts, which have no unit
+    "synth", "name", "length_unit", "robot", "targets", "weight", "surface", "points", "topology",
+    "objective", "obstacles", "sphere", "box", "capsule", "current", "arcs", "markers", "link",
+    "rigid_link", "joint_limits_deg", "intended", "distances", "configurations",
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -95,7 +101,7 @@ synth: 1
 length_unit: mm
 robot: malleable-2dof
 sigma: 0.5
-markers: {P1: [0, 0, 0], P2: [0, 0, 58], P3: [-43.7, 166.1, 439.4], P4: [-60, 121.6, 427.1], P5: [120, 500, 300]}
+markers: {P1: [0, 0, 0], P2: [0, 0, 58], P3: [-43.7, 166.1, 439.4], P4: [-60, 121.6, 427.1], P5: [-403.6, 373.2, 253.3]}
 """
 MEASURED_SEVERAL = """\
 synth: 1
@@ -108,12 +114,12 @@ configurations:
     distances: {d13: 650, d14: 667, d15: 969, d23: 603, d24: 619, d25: 930, d12: 58, d34: 49, d35: 455, d45: 460}
   by camera:
     sigma: 0.5
-    markers: {P1: [0, 0, 0], P2: [0, 0, 58], P3: [-43.7, 166.1, 439.4], P4: [-60, 121.6, 427.1], P5: [120, 500, 300]}
+    markers: {P1: [0, 0, 0], P2: [0, 0, 58], P3: [-43.7, 166.1, 439.4], P4: [-60, 121.6, 427.1], P5: [-403.6, 373.2, 253.3]}
 """
 PAGES = (
     FilePage(
         "task-file", "Task files",
-        "A task file says what `synth solve` shall reach, with which robot, and what is in the way.",
+        "A task file says what `synth solve` shall reach, with which robot, and what is in the way. Where there is a `surface`,\n`targets` may be left out; what `robot` holds is on [a page of its own](robot-file.md).",
         TaskFile, (TASK, TASK_MARKERS),
     ),
     FilePage(
@@ -123,7 +129,7 @@ PAGES = (
     ),
     FilePage(
         "measured-file", "Files of measured shapes",
-        "A file of measured shapes is what `synth inspect` reads: distances or markers of a link that is bent already.",
+        "A file of measured shapes is what `synth inspect` reads: distances or markers of a link that is bent already.\nWhat `robot` holds is on [a page of its own](robot-file.md).",
         MeasuredFile, (MEASURED, MEASURED_MARKERS, MEASURED_SEVERAL),
     ),
 )  # fmt: skip
@@ -188,7 +194,8 @@ def _default(field: typing.Any) -> str:
         return "**must be given**"
     if field.default is PydanticUndefined:
         made = field.default_factory()
-        return "none" if made is None else "see below"
+        told = "if absent" in field.description
+        return ("as told" if told else "none") if made is None else "see below"
     if isinstance(field.default, Enum):
         return f"`{field.default.value}`"
     return "none" if field.default in ([], None) else _written(field.default)
@@ -221,8 +228,10 @@ def file_page(page: FilePage) -> str:
     examples = "\n".join(f"```yaml\n{text}```\n" for text in page.examples)
     return f"""# {page.title}
 
-{page.first} Lengths are in the unit that the file states under `length_unit`,
-angles in degrees. `[]` stands for each entry of a list. A key that is not in the table is a mistake, told with its line.
+{page.first}
+
+Lengths are in the unit that the file states under `length_unit`, angles in degrees. `[]` stands for each entry of a list. A key
+that is not in the table is a mistake, told with its line.
 
 | key | meaning | unit | default | example |
 |---|---|---|---|---|

@@ -12,13 +12,16 @@ import os
 import re
 import shlex
 import tempfile
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from click.testing import CliRunner
 
 from synth.cli import main as synth_command
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 ROOT = Path(__file__).parents[1]
 MADE = ROOT / "docs" / "gallery"  # when the site is built

@@ -1,4 +1,4 @@
-"""No prose that a machine does not check: the code in README and docs runs, what commands answer is the real answer."""
+"""No prose that a machine does not check: code on the pages runs, commands answer what the pages show."""
 
 import re
 import sys
