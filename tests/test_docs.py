@@ -76,6 +76,8 @@ def test_a_page_says_what_it_is_for_and_has_one_title(page):
     outside = re.sub(r"^ *```.*?^ *```", "", page.read_text(), flags=re.MULTILINE | re.DOTALL)
     if page.stem != "changelog":
         assert len(re.findall(r"^# .", outside, re.MULTILINE)) == 1
+        first = page.read_text().split("\n", 2)[2].lstrip()
+        assert re.match(r"[A-Z`]", first), "the first sentence after the title is no sentence"
 
 
 def test_every_public_name_resolves():
