@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.proj3d import proj_transform
 
+from synth import load_task, solve
 from synth.export import draw_robot
 from synth.export.sheet.robot_drawing import RobotDrawing
 
@@ -106,3 +108,29 @@ def test_a_slice_of_the_workspace_is_as_wide_all_round(revolution):
     rho = np.hypot(swept[..., 0], swept[..., 1])
     assert np.ptp(rho, axis=0).max() < 1e-12
     assert revolution.slice_radii(arm, revolution.HEIGHT).max() <= rho.max()
+
+
+@pytest.mark.parametrize("name", ["two-crates", "out-of-reach", "moved-base"])
+def test_the_picture_of_a_task_names_its_targets_and_holds_them(name, monkeypatch):
+    monkeypatch.syspath_prepend(str(DOCS))
+    made = importlib.import_module("figure_of_task")
+    task = load_task(DOCS.parent / "problems" / name / "task.yaml")
+    solution = solve(task, alternatives=0)
+    figure = made.task_picture(solution)
+    axes = figure.axes[0]
+    assert {text.get_text() for text in axes.texts} == {target.name for target in task.targets}
+    assert [text.get_text() for text in figure.texts] == ["squares of 200 mm"]
+    x, y, _ = proj_transform(*(1e3 * task.table.positions).T, axes.get_proj())
+    places = figure.transFigure.inverted().transform(axes.transData.transform(np.column_stack([x, y])))
+    assert ((places > 0.04) & (places < 0.94)).all()
+    missed = [line for line in axes.lines if line.get_marker() == "X"]
+    assert len(missed) == sum(not target.within_tolerance for target in solution.targets)
+
+
+def test_the_workspace_in_the_picture_is_where_the_arm_gets(monkeypatch):
+    monkeypatch.syspath_prepend(str(DOCS))
+    made = importlib.import_module("figure_of_task")
+    solution = solve(load_task(DOCS.parent / "problems" / "moved-base" / "task.yaml"), alternatives=0)
+    axes = Figure().add_subplot(projection="3d")
+    points = made.draw_workspace(axes, solution.robot) / 1e3
+    assert solution.robot.closest_joints(points[::97])[1].max() < 1e-9
