@@ -29,8 +29,9 @@ from oracle import OracleArm  # noqa: E402 - after the path
 # From simple to hard; what is not named here comes last.
 ORDER = (
     "two-crates", "one-target", "three-targets", "four-targets", "twelve-targets", "moved-base", "own-robot",
-    "plane", "sphere", "puma-sphere", "free-rigid-link", "through-the-window",
-    "out-of-reach", "three-on-the-axis",
+    "asked-scara",
+    "plane", "sphere", "puma-sphere", "free-rigid-link", "published-shape", "through-the-window",
+    "below-the-floor", "out-of-reach", "three-on-the-axis",
 )  # fmt: skip
 QUANTITIES = {
     "worst_miss": "worst miss, mm",
