@@ -68,7 +68,7 @@ LIBRARIES = {
         "synthesis/nlp/program.py",
     },
     "cvxpy": {"measurement/distances/relaxation.py"},
-    "click": {"cli/main.py", "cli/terminal.py"},
+    "click": {"cli/main.py", "cli/new.py", "cli/terminal.py"},
     "rich": {"cli/session.py"},
     "ruamel": {"files/yaml_text.py"},
     "sympy": {"geometry/derivation.py"},

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from synth.cli.new import new
 from synth.version import __version__
 
 if TYPE_CHECKING:
@@ -26,8 +27,10 @@ class Seconds(click.FloatRange):
         return float(seconds)
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
-@click.version_option(__version__, prog_name="synth")
+@click.group(
+    commands=[new], context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100}
+)
+@click.version_option(__version__, "-V", "--version", prog_name="synth")
 def main() -> None:
     """Topology synthesis for malleable robots.
 
@@ -87,12 +90,11 @@ def solve(
     def command(session: Session) -> ExitCode:
         from synth.cli.solve import solve_file
 
-        form = "json" if as_json else "text"
         return solve_file(
             session,
             task_file,
             output,
-            form=form,
+            form="json" if as_json else "text",
             show_all=show_all,
             shape=shape,
             seed=seed,

@@ -19,13 +19,14 @@ from synth.export.inspection import (
     write_inspections,
 )
 from synth.export.markers import markers_csv
-from synth.export.sheet import draw_sheet
+from synth.export.sheet import draw_robot, draw_sheet
 from synth.export.solution_json import solution_to_json
 
 __all__ = [
     "SOLUTION_FILES",
     "calibration_to_json",
     "check_to_json",
+    "draw_robot",
     "draw_sheet",
     "file_names",
     "inspection_text",

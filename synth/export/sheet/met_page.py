@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from synth.export.sheet.page import MARGIN, WIDTH
+from synth.export.sheet.robot_drawing import draw_robot
 from synth.export.sheet.target_table import target_table
 from synth.export.sheet.typesetting import shortened
 from synth.guide import base_sentence, instructions
@@ -27,15 +28,19 @@ _WAYS = 128.0  # where the ways begin, right of the targets
 _WAYS_SIZE = 6.5  # pt
 _MOST_WAYS = 6
 _NAME = 25.0  # of a target
+_ROBOT = 30.0  # side of the drawing that says what the names mean
 
 
 def fill_met(page: Page, solution: Solution, guide: Guide) -> float:
     """Write all but the drawings; return how far down it goes, mm."""
     missing = any(not way.found for way in guide.ways)
     told, weight = f"Found: {ending(solution.status, solution.designs)}.", "bold" if missing else "normal"
-    page.paragraph(MARGIN, 25.5, told, WIDTH - 2 * MARGIN, size=10.0, most=1, weight=weight)
-    page.text(MARGIN, 31.0, f"Kind of shape: {guide.arm.category_distances.describe()}.", 7.5)
-    page.text(MARGIN, 35.5, base_sentence(guide), 7.5)
+    room = WIDTH - 2 * MARGIN - _ROBOT - 3.0
+    page.paragraph(MARGIN, 25.5, told, room, size=10.0, most=1, weight=weight)
+    kind = f"Kind of shape: {guide.arm.category_distances.describe()}."
+    page.paragraph(MARGIN, 31.0, kind, room, size=7.5, most=1)
+    page.paragraph(MARGIN, 35.5, base_sentence(guide), room, size=7.5, most=2)
+    draw_robot(page.frame(WIDTH - MARGIN - _ROBOT, 11.0, _ROBOT, _ROBOT), 5.0, whole=False)
     bottom = max(_points(page, guide), _steps(page, guide)) + 5.5
     return max(target_table(page, MARGIN, bottom, solution), _ways(page, bottom, guide)) + 5.5
 

@@ -62,6 +62,12 @@ class Page:
         size = (width / WIDTH, height / HEIGHT)
         self.figure.add_artist(Rectangle(corner, *size, facecolor=colour, transform=self.figure.transFigure))
 
+    def frame(self, x: float, y: float, width: float, height: float) -> Axes:
+        """Return bare axes with their upper left corner at (x, y), mm."""
+        axes = self.figure.add_axes((x / WIDTH, 1.0 - (y + height) / HEIGHT, width / WIDTH, height / HEIGHT))
+        axes.set_axis_off()
+        return axes
+
     def axes(self, x: float, y: float, width: float, height: float, limits: FloatArray) -> Axes:
         """Return axes with their upper left corner at (x, y), with a frame, a grid and numbers.
 
@@ -76,8 +82,7 @@ class Page:
         """
         from matplotlib.collections import LineCollection  # noqa: PLC0415 - the page is drawn anyway
 
-        axes = self.figure.add_axes((x / WIDTH, 1.0 - (y + height) / HEIGHT, width / WIDTH, height / HEIGHT))
-        axes.set_axis_off()
+        axes = self.frame(x, y, width, height)
         (left, bottom), (right, top) = limits.tolist()
         axes.set(xlim=(left, right), ylim=(bottom, top))
         across, up = _numbers(left, right, width / _APART[0]), _numbers(bottom, top, height / _APART[1])

@@ -13,15 +13,15 @@ from synth.export.sheet.missed_page import fill_missed
 from synth.export.sheet.page import HEIGHT, MARGIN, WIDTH, Page
 from synth.export.sheet.scene import Scene
 from synth.export.sheet.target_table import listed_targets
-from synth.export.sheet.typesetting import FAMILY, shortened
+from synth.export.sheet.typesetting import FAMILY, shortened, width
 from synth.version import __version__
 
 if TYPE_CHECKING:
     from synth.guide import Guide
     from synth.synthesis import Solution
 
-_TITLE = 16.0  # pt
-_ROBOT = 60.0  # mm, of its name
+_TITLE = 16.0  # pt; less for a long name
+_NAME, _ROBOT = 150.0, 60.0  # mm, of the task's and the robot's name
 _FARTHEST_DOWN = 178.0  # mm; the drawings begin no lower
 
 
@@ -85,7 +85,8 @@ def _fill(page: Page, solution: Solution, guide: Guide | None) -> None:
 
 def _header(page: Page, solution: Solution) -> None:
     name = shortened(solution.task.name, WIDTH - 2 * MARGIN, _TITLE, bold=True) or "task"
-    page.text(MARGIN, 18.0, name, _TITLE, weight="bold")
+    size = _TITLE * min(1.0, _NAME / width(name, _TITLE, bold=True))
+    page.text(MARGIN, 18.0, name, size, weight="bold")
     shape = "" if not solution.designs else f", shape {solution.shape} of {len(solution.designs)}"
     robot = shortened(solution.task.robot.name, _ROBOT, 6.5)
     right = f"{robot}, seed {solution.seed}{shape}, synth {__version__}"

@@ -1,0 +1,272 @@
+"""Writes the reference of the files from the models that read them: `python docs/reference_pages.py`.
+
+Meaning and default of a key come from its model, its example from a file on the page that holds every key and is read
+by the tests; what unit a key has is stated here, since no model knows it.
+"""
+
+from __future__ import annotations
+
+import typing
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+
+from pydantic import BaseModel
+from pydantic_core import PydanticUndefined
+from ruamel.yaml import YAML
+from solution_keys import SOLUTION_KEYS
+
+from synth.measurement.distances.schema import MeasuredFile
+from synth.task.robot_schema import RobotFile
+from synth.task.schema import TaskFile
+
+REFERENCE = Path(__file__).parent / "reference"
+LENGTHS = [
+    "position", "tolerance", "center", "radius", "size", "from", "to", "length", "P1",
+    "P2", "P3", "P4", "P5", "d12", "d13", "d14", "d15", "d23",
+    "d24", "d25", "d34", "d35", "d45", "floor", "min_bend_radius", "diameter", "tip_offset",
+    "rounding", "sigma",
+]  # fmt: skip
+UNITS = (
+    dict.fromkeys(LENGTHS, "length")
+    | dict.fromkeys(("yaw_deg", "joint1_deg", "base", "second", "max_total_bend_deg"), "deg")
+    | {"curvature": "1/length"}
+)
+PLAIN = [  # keys of words, counts and parts, which have no unit
+    "synth", "name", "length_unit", "robot", "targets", "weight", "surface", "points", "topology",
+    "objective", "obstacles", "sphere", "box", "capsule", "current", "arcs", "markers", "link",
+    "rigid_link", "joint_limits_deg", "intended", "distances", "configurations",
+]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class FilePage:
+    """A page about one kind of file."""
+
+    name: str
+    title: str
+    first: str
+    model: type[BaseModel]
+    examples: tuple[str, ...]
+
+
+TASK = """\
+synth: 1
+name: two crates and a shelf
+length_unit: mm
+robot: malleable-2dof
+base: {position: [0, 0, 0], yaw_deg: 0}
+floor: 0
+topology: any
+objective: least_squares
+targets:
+  - {name: pick, position: [512.0, 140.5, 210.0], tolerance: 5, weight: 1}
+  - {name: place, position: [-300, 420, 180], tolerance: 5}
+obstacles:
+  - {name: shelf, box: {center: [-700, 500, 800], size: [400, 200, 20], yaw_deg: 30}}
+  - {name: column, capsule: {from: [600, 600, 0], to: [600, 600, 900], radius: 40}}
+  - {name: lamp, sphere: {center: [0, 0, 1300], radius: 80}}
+current: {arcs: [{curvature: [0.002, -0.001], length: 300}, {curvature: [0, 0], length: 320}]}
+"""
+TASK_MARKERS = """\
+synth: 1
+length_unit: mm
+robot: malleable-2dof
+targets:
+  - {name: pick, position: [512.0, 140.5, 210.0]}
+surface: {points: scan.csv, tolerance: 3}
+current: {markers: {P3: [-43.7, 166.1, 439.4], P4: [-60.0, 121.6, 427.1], joint1_deg: 180}}
+"""
+ROBOT = """\
+name: my robot
+length_unit: mm
+d12: 58
+link: {length: [550, 700], min_bend_radius: 110, diameter: 50, max_total_bend_deg: 286}
+tip_offset: 24.5
+d34: 49
+rigid_link: {d35: 455, d45: 460, diameter: 20}
+joint_limits_deg: {base: [10, 350], second: [53, 307]}
+"""
+MEASURED = """\
+synth: 1
+name: a shape measured by tape
+length_unit: mm
+robot: malleable-2dof
+rounding: 1
+intended: puma
+distances: {d13: 650, d14: 667, d15: 969, d23: 603, d24: 619, d25: 930, d12: 58, d34: 49, d35: 455, d45: 460}
+"""
+MEASURED_MARKERS = """\
+synth: 1
+length_unit: mm
+robot: malleable-2dof
+sigma: 0.5
+markers: {P1: [0, 0, 0], P2: [0, 0, 58], P3: [-43.7, 166.1, 439.4], P4: [-60, 121.6, 427.1], P5: [-403.6, 373.2, 253.3]}
+"""
+MEASURED_SEVERAL = """\
+synth: 1
+length_unit: mm
+robot: malleable-2dof
+configurations:
+  by tape:
+    rounding: 1
+    intended: puma
+    distances: {d13: 650, d14: 667, d15: 969, d23: 603, d24: 619, d25: 930, d12: 58, d34: 49, d35: 455, d45: 460}
+  by camera:
+    sigma: 0.5
+    markers: {P1: [0, 0, 0], P2: [0, 0, 58], P3: [-43.7, 166.1, 439.4], P4: [-60, 121.6, 427.1], P5: [-403.6, 373.2, 253.3]}
+"""
+PAGES = (
+    FilePage(
+        "task-file", "Task files",
+        "A task file says what `synth solve` shall reach, with which robot, and what is in the way. Where there is a `surface`,\n`targets` may be left out; what `robot` holds is on [a page of its own](robot-file.md).",
+        TaskFile, (TASK, TASK_MARKERS),
+    ),
+    FilePage(
+        "robot-file", "Robot files",
+        "A robot file says what is fixed in a robot; a task names its path, or holds the same keys under `robot`.",
+        RobotFile, (ROBOT,),
+    ),
+    FilePage(
+        "measured-file", "Files of measured shapes",
+        "A file of measured shapes is what `synth inspect` reads: distances or markers of a link that is bent already.\nWhat `robot` holds is on [a page of its own](robot-file.md).",
+        MeasuredFile, (MEASURED, MEASURED_MARKERS, MEASURED_SEVERAL),
+    ),
+)  # fmt: skip
+
+
+def parts_of(annotation: object) -> list[type[BaseModel]]:
+    """Return the models that the type of a key holds."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [part for argument in typing.get_args(annotation) for part in parts_of(argument)]
+
+
+def keys_of(model: type[BaseModel], path: str = "") -> dict[str, typing.Any]:
+    """Return every key that a file may hold, by its path, with the field of its model."""
+    found = {}
+    for name, field in model.model_fields.items():
+        key = f"{path}{field.alias or name}"
+        found[key] = field
+        inside = f"{key}[]." if "list[" in str(field.annotation) else f"{key}."
+        if key == "configurations":
+            inside = "configurations.*."
+        for part in parts_of(field.annotation) if name != "robot" else []:  # that has a page of its own
+            found |= keys_of(part, inside)
+    return found
+
+
+def values_of(content: object, path: str = "") -> dict[str, object]:
+    """Return the first value that stands under each path of a document."""
+    found: dict[str, object] = {}
+    if isinstance(content, dict):
+        for key, value in content.items():
+            named = f"{path}{'*' if path == 'configurations.' else key}"
+            found.setdefault(named, value)
+            deeper = f"{named}[]." if isinstance(value, list) else f"{named}."
+            for deep in value if isinstance(value, list) else [value]:
+                found = values_of(deep, deeper) | found
+    return found
+
+
+def examples_of(page: FilePage) -> dict[str, object]:
+    """Return a value for each path, from the examples of a page."""
+    found: dict[str, object] = {}
+    for text in page.examples:
+        found = values_of(YAML(typ="safe").load(text)) | found
+    return found
+
+
+def _written(value: object) -> str:
+    if isinstance(value, dict | list) and any(isinstance(each, dict) for each in _inner(value)):
+        return "below"
+    if isinstance(value, list):
+        return f"`[{', '.join(map(str, value))}]`"
+    return "below" if isinstance(value, dict) else f"`{value}`"
+
+
+def _inner(value: dict | list) -> list[object]:
+    return list(value.values() if isinstance(value, dict) else value)
+
+
+def _default(field: typing.Any) -> str:
+    if field.is_required():
+        return "**must be given**"
+    if field.default is PydanticUndefined:
+        made = field.default_factory()
+        told = "if absent" in field.description
+        return ("as told" if told else "none") if made is None else "see below"
+    if isinstance(field.default, Enum):
+        return f"`{field.default.value}`"
+    return "none" if field.default in ([], None) else _written(field.default)
+
+
+def unit_of(path: str) -> str:
+    """Return the unit of a key: "length" is the unit that the file states. Raises KeyError for a key not known here."""
+    key = path.rpartition(".")[2]
+    if path == "base":
+        return ""
+    if key == "length" and path.endswith("rigid_link.length"):
+        return "length"
+    return UNITS[key] if key in UNITS else dict.fromkeys([*PLAIN, "*"], "")[key]
+
+
+def _choices(field: typing.Any) -> str:
+    found = [field.annotation, *typing.get_args(field.annotation)]
+    kinds = [each for each in found if isinstance(each, type) and issubclass(each, Enum)]
+    return f"; one of {', '.join(f'`{member.value}`' for member in kinds[0])}" if kinds else ""
+
+
+def file_page(page: FilePage) -> str:
+    """Return the page about a kind of file."""
+    shown = examples_of(page)
+    rows = [
+        f"| `{path}` | {field.description}{_choices(field)} | {unit_of(path)} | {_default(field)} "
+        f"| {_written(shown[path])} |"
+        for path, field in keys_of(page.model).items()
+    ]
+    examples = "\n".join(f"```yaml\n{text}```\n" for text in page.examples)
+    return f"""# {page.title}
+
+{page.first}
+
+Lengths are in the unit that the file states under `length_unit`, angles in degrees. `[]` stands for each entry of a list. A key
+that is not in the table is a mistake, told with its line.
+
+| key | meaning | unit | default | example |
+|---|---|---|---|---|
+{chr(10).join(rows)}
+
+Between them the examples hold every key:
+
+{examples}"""
+
+
+def solution_page() -> str:
+    """Return the page about solution files."""
+    rows = [f"| `{path}` | {meaning} | {unit} |" for path, unit, meaning in SOLUTION_KEYS]
+    return f"""# Solution files
+
+A solution file is what `synth solve -o DIR` writes and `--json` prints: the task, the answer and the guide in one, so
+that it can be loaded and verified again with no other file. All is in metres, seconds and radians; what JSON cannot
+hold, infinity, is null. `[]` stands for each entry of a list.
+
+| key | meaning | unit |
+|---|---|---|
+{chr(10).join(rows)}
+"""
+
+
+def pages() -> dict[str, str]:
+    """Return all pages by the names of their files."""
+    return {f"{page.name}.md": file_page(page) for page in PAGES} | {"solution-file.md": solution_page()}
+
+
+def main() -> None:
+    """Write the pages."""
+    for name, text in pages().items():
+        (REFERENCE / name).write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
