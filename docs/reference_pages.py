@@ -29,13 +29,16 @@ LENGTHS = [
 ]  # fmt: skip
 UNITS = (
     dict.fromkeys(LENGTHS, "length")
-    | dict.fromkeys(("yaw_deg", "joint1_deg", "base", "second", "max_total_bend_deg"), "deg")
+    | dict.fromkeys(
+        ("yaw_deg", "rpy_deg", "tolerance_deg", "joint1_deg", "base", "second", "max_total_bend_deg"), "deg"
+    )
     | {"curvature": "1/length"}
 )
 PLAIN = [  # keys of words, counts and parts, which have no unit
     "synth", "name", "length_unit", "robot", "targets", "weight", "surface", "points", "topology",
     "objective", "obstacles", "sphere", "box", "capsule", "current", "arcs", "markers", "link",
-    "rigid_link", "joint_limits_deg", "intended", "distances", "configurations",
+    "rigid_link", "joint_limits_deg", "intended", "distances", "configurations", "choices", "approach",
+    "direction",
 ]  # fmt: skip
 
 
@@ -76,6 +79,27 @@ targets:
   - {name: pick, position: [512.0, 140.5, 210.0]}
 surface: {points: scan.csv, tolerance: 3}
 current: {markers: {P3: [-43.7, 166.1, 439.4], P4: [-60.0, 121.6, 427.1], joint1_deg: 180}}
+"""
+TASK_RANGE = """\
+synth: 1
+name: somewhere on the wall, welded from above
+length_unit: mm
+robot: malleable-2dof
+base: {position: [[-200, 200], 700, 500], rpy_deg: [90, 0, [-180, 180]]}
+targets:
+  - {name: weld, position: [300, 100, 200], tolerance: 5, approach: {direction: [0, 0, -1], tolerance_deg: 30}}
+"""
+TASK_CHOICES = """\
+synth: 1
+name: two places with clamps
+length_unit: mm
+robot: malleable-2dof
+base:
+  choices:
+    - {name: bench, position: [0, 0, 0], yaw_deg: 90}
+    - {name: wall, position: [0, 700, 500], rpy_deg: [90, 0, 0]}
+targets:
+  - {name: pick, position: [400, 200, 150], tolerance: 5}
 """
 ROBOT = """\
 name: my robot
@@ -120,7 +144,7 @@ PAGES = (
     FilePage(
         "task-file", "Task files",
         "A task file says what `synth solve` shall reach, with which robot, and what is in the way. Where there is a `surface`,\n`targets` may be left out; what `robot` holds is on [a page of its own](robot-file.md).",
-        TaskFile, (TASK, TASK_MARKERS),
+        TaskFile, (TASK, TASK_MARKERS, TASK_RANGE, TASK_CHOICES),
     ),
     FilePage(
         "robot-file", "Robot files",
@@ -194,8 +218,10 @@ def _default(field: typing.Any) -> str:
         return "**must be given**"
     if field.default is PydanticUndefined:
         made = field.default_factory()
-        told = "if absent" in field.description
-        return ("as told" if told else "none") if made is None else "see below"
+        told = "absent" in field.description
+        if told or made is None:
+            return "as told" if told else "none"
+        return "see below"
     if isinstance(field.default, Enum):
         return f"`{field.default.value}`"
     return "none" if field.default in ([], None) else _written(field.default)

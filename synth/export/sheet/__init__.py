@@ -1,7 +1,6 @@
 """The sheet that the operator holds: guide.pdf."""
 
 from synth.export.sheet.robot_drawing import draw_robot
-from synth.export.sheet.scene import AXIS, GHOST, LINK, TARGET
 from synth.export.sheet.sheet import draw_sheet
 from synth.export.sheet.views import AXIS, GHOST, LINK, TARGET
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from synth.export.sheet.scene import AXIS, GHOST, LINK
+from synth.export.sheet.views import AXIS, GHOST, LINK
 from synth.guide import MARKERS
 from synth.robot import Arm, Interval, LinkShape, MalleableLink, RigidLink, Robot, turned
 
