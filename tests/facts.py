@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from ruamel.yaml import YAML
 
 import synth
+from synth.robot import BasePose
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 NAMES = sorted(path.name for path in PROBLEMS.iterdir() if path.is_dir())
@@ -101,6 +102,23 @@ def sweep(task, arm):
     return 1e3 * arm.end_effector(np.column_stack([np.full(200, np.pi), theta2]))
 
 
+def directions_broken(task, arm, joints):
+    """Return where the rigid link points otherwise than a target asks for, as sentences."""
+    centre, _ = arm.circle
+    for target, (theta1, theta2) in zip(task.targets, joints, strict=True):
+        if target.approach is None:
+            continue
+        c, s = np.cos(theta1), np.sin(theta1)
+        turned = np.array([c * centre[0] - s * centre[1], s * centre[0] + c * centre[1], centre[2]])
+        base, yaw = task.base.position, task.base.yaw
+        c, s = np.cos(yaw), np.sin(yaw)
+        axis = np.array([c * turned[0] - s * turned[1], s * turned[0] + c * turned[1], turned[2]]) + base
+        pointing = arm.end_effector(np.array([[theta1, theta2]]))[0] - axis
+        angle = np.arccos(pointing @ target.approach.direction / np.linalg.norm(pointing))
+        if angle > target.approach.tolerance + 1e-5:
+            yield f"{target.name} is arrived at {np.degrees(angle):.3f} deg beside its direction"
+
+
 def limits_broken(task, arm, joints):
     """Return the limits that an arm breaks in itself or at a target, as sentences."""
     solids = [obstacle.solid for obstacle in task.obstacles]
@@ -119,11 +137,17 @@ def broken_facts(facts, task, solution):
     told = [] if content["status"] == facts.status else [f"status {content['status']}: {content['message']}"]
     if content["link"] is None:
         return [*told, "no shape"]
+    if task.places is not None:
+        stands = BasePose(**content["base"])
+        if not task.places.contains(stands):
+            told.append(f"the base stands at {stands}")
+        task = task.standing_at(stands)
     arm = OracleArm.stated(task, content)
     joints = np.array([target["joints"] for target in content["targets"]])
     return [
         *told,
         *limits_broken(task, arm, joints),
+        *directions_broken(task, arm, joints),
         *_misses_broken(task, arm, content["targets"], joints),
         *(_clearances_broken(task, arm, content["targets"]) if task.obstacles else ()),
         *_numbers_broken(facts, measured(task, arm, joints), sweep(task, arm)),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from planted import ROBOT, planted_arm
 
-from synth.robot import ArmBody
+from synth.robot import ArmBody, clear_of_tube
 from synth.task import Approach, PointTarget, Task
 
 
@@ -19,7 +19,7 @@ def planted_approach(seed: int, count: int = 1, tolerance: float = np.radians(1.
             [rng.uniform(each.lower, each.upper, 40 * count) for each in (limits.base, limits.second)]
         )
         points = arm.forward_kinematics(*joints.T)
-        good = (points[:, 2] >= 0.0) & (ArmBody(arm).rod_from_tube(joints[:, 1]) > 0.0)
+        good = (points[:, 2] >= 0.0) & (clear_of_tube(ArmBody(arm), joints[:, 1]) > 0.0)
         if good.sum() < count:
             continue
         targets = []

@@ -8,7 +8,17 @@ import re
 
 import numpy as np
 import pytest
-from facts import NAMES, PROBLEMS, Facts, broken_facts, facts_of, limits_broken, planted_arm_of, task_of
+from facts import (
+    NAMES,
+    PROBLEMS,
+    Facts,
+    broken_facts,
+    directions_broken,
+    facts_of,
+    limits_broken,
+    planted_arm_of,
+    task_of,
+)
 from pydantic import ValidationError
 from ruamel.yaml import YAML
 
@@ -31,6 +41,7 @@ def test_planted_shape_is_what_its_facts_say(name):
     assert list(facts.planted.joints_deg) == [target.name for target in task.targets]
     joints = np.radians(list(facts.planted.joints_deg.values()))
     assert not limits_broken(task, arm, joints)
+    assert not list(directions_broken(task, arm, joints))
     assert arm.misses(joints, task.table.positions).max() <= facts.planted.within / 1e3
     if facts.status == "found":
         assert facts.planted.within / 1e3 <= task.tolerances.min()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.robot import BasePose
-from synth.synthesis import Displacements, misses_displaced, rotations
+from synth.synthesis import Displacements, TargetsSeen, displaced, rotations
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
@@ -92,6 +92,9 @@ def _tried(task: Task, design: Design, position: float, direction: float) -> tup
     check, arm = design.verification, design.arm
     slack = task.tolerances - check.misses
     barely = np.argsort(slack, kind="stable")[:_TRIED_TARGETS]
+    aims = TargetsSeen.from_base(task, arm.base, barely)
+    rows = task.table.approaches
+    room = np.ones(len(slack)) if rows is None else np.nan_to_num(rows[:, 3] - check.astray, nan=1.0)
     angles = np.linspace(0.0, 2.0 * math.pi, _DIRECTIONS, endpoint=False)[:, None]
     across = np.cos(angles) * arm.end_frame[0][:, 1] + np.sin(angles) * arm.end_frame[0][:, 2]
     around = np.random.default_rng(0).normal(size=(_DIRECTIONS, 3))
@@ -99,11 +102,10 @@ def _tried(task: Task, design: Design, position: float, direction: float) -> tup
 
     def used(shifts: FloatArray, turns: FloatArray) -> float:
         """Return the largest share of its slack that an error takes from a target."""
-        lost = (
-            misses_displaced(arm, task.positions_in_base[barely], Displacements(shifts, turns))
-            - check.misses[barely]
-        )
-        return float(np.max(lost / np.maximum(slack[barely], _NO_SLACK)))
+        there = displaced(arm, aims, Displacements(shifts, turns))
+        lost = (there.misses - check.misses[barely]) / np.maximum(slack[barely], _NO_SLACK)
+        beside = there.astray / np.maximum(arm.circle.radius * room[barely], _NO_SLACK)
+        return float(max(lost.max(), np.where(there.astray > 0.0, 1.0 + beside, 0.0).max()))
 
     for _ in range(_TRIALS):
         share = used(position * around, np.broadcast_to(np.eye(3), (_DIRECTIONS, 3, 3)))

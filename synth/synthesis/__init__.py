@@ -3,6 +3,7 @@
 from synth.synthesis.blocking import explain
 from synth.synthesis.bound import Bound
 from synth.synthesis.check import TargetResult, Verification, Violation, target_results, verify, worst_targets
+from synth.synthesis.shapes import TargetsSeen
 from synth.synthesis.solution import (
     NotFoundError,
     Release,
@@ -22,7 +23,7 @@ from synth.synthesis.wanted import (
     Displacements,
     Forgiveness,
     Motion,
-    misses_displaced,
+    displaced,
     motions,
     rotations,
     ways_and_forgiveness,
@@ -41,14 +42,15 @@ __all__ = [
     "Solution",
     "Status",
     "TargetResult",
+    "TargetsSeen",
     "Timing",
     "Verification",
     "Violation",
     "clearance_told",
+    "displaced",
     "ending",
     "explain",
     "help_told",
-    "misses_displaced",
     "motions",
     "proof_sentence",
     "reasons_told",

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Annotated, Any
 
 from pydantic import (
+    AfterValidator,
     BeforeValidator,
     Field,
     model_validator,
@@ -33,10 +34,18 @@ def _at_base() -> Any:
     return Floor.AT_BASE
 
 
+def _somewhere(direction: list[float]) -> list[float]:
+    if not any(direction):
+        raise ValueError("must point somewhere, but is zero")
+    return direction
+
+
 class ApproachEntry(Strict):
     """The direction in which the rigid link points as it arrives, from axis 2 to the end effector."""
 
-    direction: Position = Field(description="[x, y, z] in the task frame, of any length")
+    direction: Annotated[Position, AfterValidator(_somewhere)] = Field(
+        description="[x, y, z] in the task frame, of any length"
+    )
     tolerance_deg: Annotated[float, Field(gt=0, le=180)] = Field(
         default=5.0, description="largest angle between the two, deg"
     )

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 LENGTH_SLACK = 1e-6  # what rounding may do, m
-_FIRST = 1e3  # m / rad: joint angles that point as asked come before all that come nearer
+_LAST = 1e3  # m, on top of misses: joint angles that point elsewhere than asked come last
 _TOGETHER = 2000  # joint angles whose clearances are looked at together
 # Of more joint angles than that the ranges of joint 2 that they lie in are looked at first.
 _RANGES = 500
@@ -47,7 +47,7 @@ def chosen_joints(
     targets = task.table.positions
     closest, _ = arm.closest_joints(targets)
     candidates = np.stack([closest] if given is None else [closest, given])
-    elsewhere = _FIRST * beyond_direction(task, arm, candidates)
+    elsewhere = _LAST * (beyond_direction(task, arm, candidates) > 0.0)
     misses = _misses(task, arm, candidates, targets) + elsewhere
     if given is not None and keep:
         misses[1][misses[1] <= task.tolerances] = -1.0  # before all others
@@ -59,7 +59,7 @@ def chosen_joints(
         branches = arm.inverse_kinematics(targets[stuck])
         others = np.moveaxis(branches.joints, -2, 0)
         off = _misses(task, arm, others, targets[stuck])
-        off += _FIRST * beyond_direction(task, arm, others, stuck)
+        off += _LAST * (beyond_direction(task, arm, others, stuck) > 0.0)
         off[np.isinf(branches.miss.T)] = np.inf  # beyond the joint limits, or no branch at all
         candidates, misses = (
             np.concatenate(pair) for pair in ((candidates[:, stuck], others), (misses[:, stuck], off))

@@ -20,7 +20,7 @@ from synth.robot import into_turn
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from synth.robot import JointLimits, Kinematics
+    from synth.robot import BasePose, JointLimits, Kinematics
     from synth.synthesis.shapes.shapes import Shapes
     from synth.task import Task
 
@@ -59,9 +59,19 @@ class TargetsSeen:
         return cls(shapes.bases.seen(task.table.positions), task.robot.joint_limits, rows)
 
     @classmethod
-    def of(cls, task: Task, limits: JointLimits | None = None) -> TargetsSeen:
-        """Return the targets of a task from its base, for its joint limits or others."""
-        return cls(task.positions_in_base, limits or task.robot.joint_limits, task.approaches_in_base)
+    def of(cls, task: Task) -> TargetsSeen:
+        """Return the targets of a task from its base."""
+        return cls(task.positions_in_base, task.robot.joint_limits, task.approaches_in_base)
+
+    @classmethod
+    def from_base(
+        cls, task: Task, base: BasePose, some: NDArray[np.intp] | slice = slice(None)
+    ) -> TargetsSeen:
+        """Return some targets of a task from a base that may be its own or another."""
+        rows = task.table.approaches
+        if rows is not None:
+            rows = np.column_stack([rows[some, :3] @ base.rotation, rows[some, 3]])
+        return cls(base.to_base(task.table.positions[some]), task.robot.joint_limits, rows)
 
     @cached_property
     def radial(self) -> FloatArray:
@@ -187,6 +197,11 @@ class Postures:
     def squared(self) -> FloatArray:
         """Squared misses, those of the directions asked for with them, shape (N, n), m^2."""
         return np.asarray(dot(self.miss, self.miss) + self.astray**2)
+
+    @property
+    def misses(self) -> FloatArray:
+        """Distances of P5 from the targets, shape (N, n), m."""
+        return np.asarray(np.sqrt(dot(self.miss, self.miss)))
 
     @cached_property
     def free_tangent(self) -> tuple[FloatArray, FloatArray]:

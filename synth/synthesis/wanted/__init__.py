@@ -1,7 +1,7 @@
 """What a person wants of a shape: ways, margins, forgiveness of the hand, calm; and shapes that have it."""
 
 from synth.synthesis.wanted.design import Design
-from synth.synthesis.wanted.displaced import Displacements, misses_displaced, rotations
+from synth.synthesis.wanted.displaced import Displacements, displaced, rotations
 from synth.synthesis.wanted.forgiveness import Forgiveness
 from synth.synthesis.wanted.judging import judged, ways_and_forgiveness
 from synth.synthesis.wanted.motion import Motion
@@ -15,9 +15,9 @@ __all__ = [
     "Forgiveness",
     "Motion",
     "best_of",
+    "displaced",
     "judged",
     "leaves_no_wish",
-    "misses_displaced",
     "motions",
     "objective",
     "preferred_designs",

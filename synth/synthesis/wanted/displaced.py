@@ -44,21 +44,20 @@ class Displacements:
         return Kinematics(frame.reshape(-1, 3, 3), centre.reshape(-1, 3), radius)
 
 
-def misses_displaced(arm: Arm, positions: FloatArray, displacements: Displacements) -> FloatArray:
-    """Return the misses of arms whose link ends elsewhere, joints at their best within their limits.
+def displaced(arm: Arm, aims: TargetsSeen, displacements: Displacements) -> Postures:
+    """Return the postures of arms whose link ends elsewhere, joints at their best within their limits.
 
     Args:
         arm: The robot in the shape aimed at.
-        positions: Targets in the base frame, shape (n, 3), m.
-        displacements: How far the link's end is off.
+        aims: The targets, n of them.
+        displacements: How far the link's end is off, k times.
 
     Returns:
-        Distances of P5 from the targets, shape (k, n), m.
+        The postures nearest to the targets, of k shapes at n targets.
     """
     frame, end = arm.end_frame
     aimed = Kinematics(frame[None], arm.circle.centre[None], np.array([arm.circle.radius]))
-    seen = TargetsSeen(positions, arm.robot.joint_limits)
-    return np.sqrt(Postures.nearest(seen, displacements.on(aimed, end[None]), never_away=True).squared)
+    return Postures.nearest(aims, displacements.on(aimed, end[None]), never_away=True)
 
 
 def rotations(vectors: FloatArray) -> FloatArray:

@@ -22,6 +22,8 @@ from synth.synthesis.shapes import Postures, TargetsSeen
 from synth.synthesis.wanted.displaced import Displacements, rotations
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from synth.arrays import FloatArray
     from synth.robot import Arm
     from synth.task import Task
@@ -92,9 +94,8 @@ def hand_forgiveness(task: Task, arm: Arm, joints: FloatArray | None = None) -> 
     circle = arm.circle
     kinematics = Kinematics(frame[None], circle.centre[None], np.array([circle.radius]))
     some = _some(len(task.targets))
-    positions = task.table.positions[some]
-    there = arm.closest_joints(positions)[0] if joints is None else joints[some]
-    aims = TargetsSeen(arm.base.to_base(positions), task.robot.joint_limits)
+    there = arm.closest_joints(task.table.positions[some])[0] if joints is None else joints[some]
+    aims = TargetsSeen.from_base(task, arm.base, some)
     worst, within = misses_after_a_hand(aims, task.tolerances[some], kinematics, end[None], there[None, :, 1])
     return Forgiveness(float(worst[0]), float(within[0]))
 
@@ -120,13 +121,14 @@ def misses_after_a_hand(
         aimed = Kinematics(kinematics.frame[some], kinematics.centre[some], kinematics.radius[some])
         from_here = np.repeat(theta2[some], count, axis=0)
         left = Postures.led_from(aims, hand.on(aimed, ends[some]), from_here, never_away=True)
-        misses = np.sqrt(left.squared).reshape(-1, count, len(tolerances))
+        misses = left.misses.reshape(-1, count, len(tolerances))
+        met = (misses <= tolerances) & (left.astray == 0.0).reshape(misses.shape)
         worst[some] = misses.max(axis=2).mean(axis=1)
-        within[some] = (misses <= tolerances).all(axis=2).mean(axis=1)
+        within[some] = met.all(axis=2).mean(axis=1)
     return worst, within
 
 
-def _some(count: int) -> FloatArray | slice:
+def _some(count: int) -> NDArray[np.intp] | slice:
     """Return which of so many targets are asked."""
     if count <= _MOST_TARGETS:
         return slice(None)

@@ -24,6 +24,7 @@ _JOINT = math.radians(5.0)  # of a joint, at each limit
 _LENGTH = 5e-3  # m, of the link's length
 _BEND = 0.05  # of bend radius and total bend, as a share
 _CLEARANCE = 5e-3  # m, to obstacles
+_DIRECTION = 0.5  # of the tolerance of a direction: the rest is for the hand
 _PART_OF_RANGE = 0.25  # of a narrow range, at each end no more than this
 _ROUNDING = 1e-6  # of a margin
 
@@ -96,7 +97,7 @@ def joint_shortfalls(robot: Robot, joints: FloatArray) -> FloatArray:
 def drawn_in(task: Task, *, joints: bool = True, link: bool = True) -> Task:
     """Return a task of a robot whose limits are drawn in by the margins: what keeps them has margins.
 
-    Tube and rod are thicker by the clearance on all sides.
+    Tube and rod are thicker by the clearance on all sides; directions of arrival are asked for more strictly.
 
     Args:
         task: The task.
@@ -118,7 +119,11 @@ def drawn_in(task: Task, *, joints: bool = True, link: bool = True) -> Task:
         )
         rigid = replace(robot.rigid_link, diameter=robot.rigid_link.diameter + 2.0 * margins.clearance)
         robot = replace(robot, link=gentle, rigid_link=rigid)
-    return replace(task, robot=robot)
+    table = task.table
+    if joints and link and table.approaches is not None:
+        stricter = table.approaches * np.array([1.0, 1.0, 1.0, _DIRECTION])
+        table = replace(table, approaches=stricter)
+    return replace(task, robot=robot, targets=table)
 
 
 def _missing(have: float, should: float) -> float:

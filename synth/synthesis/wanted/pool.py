@@ -58,7 +58,7 @@ class Pool:
             stop: When it says yes the obstacles are left out: nobody asks for these shapes any more.
             part: Of each tolerance, that a miss may take.
         """
-        aims = TargetsSeen.of(task, narrow.robot.joint_limits)
+        aims = TargetsSeen.of(narrow)
         postures = Postures.nearest(aims, shapes.kinematics)
         within = (np.sqrt(postures.squared) <= part * task.tolerances).all(axis=1)
         joints = postures.joints
