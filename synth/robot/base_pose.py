@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen_value
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.checks import Checks
 
 if TYPE_CHECKING:
@@ -33,11 +34,11 @@ class BasePose:
         checks.number("yaw")
         checks.refuse()
 
-    @property
+    @cached_property
     def rotation(self) -> FloatArray:
         """Rotation matrix from the base frame to the task frame, shape (3, 3)."""
         c, s = math.cos(self.yaw), math.sin(self.yaw)
-        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        return frozen([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
     def to_task(self, points: ArrayLike) -> FloatArray:
         """Turn points of the base frame, shape (..., 3), into points of the task frame."""

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.checks import Checks, described, wrong_type
 from synth.geometry import Box, Capsule, Sphere
 from synth.names import given_twice
@@ -36,8 +36,7 @@ class Objective(Enum):
     MINIMAX = "minimax"
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Obstacle:
     """A solid that link, rigid link and end effector keep clear of.
 
@@ -56,8 +55,7 @@ class Obstacle:
         checks.refuse()
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Task:
     """A synthesis task: reach the targets with one shape of the link.
 

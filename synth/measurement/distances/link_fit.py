@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.robot import ANYWHERE, ArcChains, Arm, BasePose, Interval, stepped
 from synth.rounding import told_apart
 
@@ -29,8 +29,7 @@ _LENGTH_SLACK = 1e-9
 _AIM = 1e-8
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class LinkFit:
     """A shape of the link for a measured pose.
 
@@ -88,8 +87,7 @@ def fit_link(
     return replace(_best(chains, _Bounds(robot, lower, upper), x, lower, upper), obstacle=obstacle)
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class _Bounds:
     """Bounds of d13, d14, d23, d24 as an aim of chains, the same for each."""
 

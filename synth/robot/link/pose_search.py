@@ -13,12 +13,11 @@ That none was found proves nothing: for that there is `why_no_link`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import compared_by_value
+from synth.arrays import frozen_value
 from synth.robot.hardware import turned
 from synth.robot.link.arc_chains import ArcChains
 from synth.robot.link.chain_steps import ARRIVED, Wish, eased, stepped
@@ -99,8 +98,7 @@ def links_to_poses(
     return [shape for rows in batches for shape in search.shapes(poses.take(rows))]
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class _Search:
     """Chains of few arcs, drawn at random, and the present shape."""
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, compared_by_value, frozen
+from synth.arrays import FloatArray, frozen, frozen_value
 from synth.robot import ArcChains, Arm, BasePose, Kinematics, LinkShape, chain_end, chain_points
 
 if TYPE_CHECKING:
@@ -27,8 +27,7 @@ ARCS = 4  # equal arcs of a link: eight curvatures and a length for the five num
 CURVATURES, LENGTH, _D35, _D45 = slice(0, 2 * ARCS), 2 * ARCS, 2 * ARCS + 1, 2 * ARCS + 2
 
 
-@compared_by_value
-@dataclass(frozen=True, eq=False)
+@frozen_value
 class Shapes:
     """Shapes of a robot, each a row of unknowns; leading axes "..." are free.
 
