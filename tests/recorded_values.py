@@ -29,6 +29,8 @@ from synth.measurement.distances.measured import Precision
 from synth.measurement.distances.reading import parse_measurements
 from synth.measurement.markers.calibration import calibrate
 from synth.robot import Arm, LinkShape, Workspace, link_to_pose, why_no_link
+from synth.robot.arm_in_shape import ArmInShape
+from synth.sweep import solve_many
 from synth.synthesis import Release, solve, verify
 from synth.synthesis.bound import prove
 from synth.synthesis.relaxed_limits import limits_of
@@ -90,7 +92,11 @@ def _solved(folder):
     solution = solve(task)
     (make_guide(task, solution.best), solution.targets)
     write_files(solution, folder)
+    ArmInShape(*(getattr(solution.robot, field.name) for field in dataclasses.fields(ArmInShape)))
     Outcome(*(getattr(solution, field.name) for field in dataclasses.fields(Outcome)))
+    solution.export(folder)
+    told = []
+    solve_many([task], store=folder / "sweep.sqlite", progress=told.append, alternatives=0)
     limit = next(iter(limits_of(task)))
     Release(limit.name, 0.1, 0.1, limit.sentence(0.1), solution.best, limit.relaxed(0.1))
 

@@ -25,6 +25,8 @@ def solution_document(task, designs):
 
     return {
         "schema": "synth.solution/2",
+        "status": "found" if designs[0].verification.found else "best_effort",
+        "message": "as found",
         "task": {
             "name": task.name,
             "robot": {

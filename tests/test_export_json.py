@@ -155,7 +155,10 @@ def test_the_fields_of_the_contract_are_there():
     }  # fmt: skip
     assert set(content["guide"]["tolerance"]) >= {"position", "direction"}
     (other,) = content["alternatives"]
-    assert set(other) == {"shape", "distances", "category", "link", "figures", "targets"}
+    assert set(other) == {
+        "shape", "distances", "category", "base", "link", "rigid_link", "ways", "figures", "targets"
+    }  # fmt: skip
+    assert content["rigid_link"] == {"d35": 0.455, "d45": 0.460}
     assert other["shape"] == 2
     assert "centreline" not in other["link"]
     assert [target["name"] for target in other["targets"]] == ["t0", "t1", "t2"]

@@ -12,7 +12,7 @@ from synth.export import calibration_to_json
 from synth.measurement import StandingArm, calibrate, load_points, sigma_of
 from synth.rounding import rounded_up
 from synth.sentences import BULLET
-from synth.task import load_shapes
+from synth.solution_file import load_solved
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -34,9 +34,10 @@ def calibrate_file(
     Returns:
         The exit code.
     """
-    task, arms = load_shapes(solution)
+    solved = load_solved(solution)
+    task = solved.task
     positions, joints = load_points(points)
-    wanted = StandingArm.of(arms[0], task.robot.joint_limits.base.middle)
+    wanted = StandingArm.of(solved.robot, task.robot.joint_limits.base.middle)
     found = calibrate(positions, joints, wanted, sigma_of(marker_error), most_rms=surface_rms, seed=seed)
     content = calibration_to_json(found, task)
     if as_json:

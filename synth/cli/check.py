@@ -10,8 +10,7 @@ from synth.cli.say import say
 from synth.export import check_to_json, json_bytes, refusal_to_json, write_all
 from synth.guide import Verdict, best_settings, check_arm, check_text, hold_posture
 from synth.measurement import StandingArm, examine, load_readings, sigma_of
-from synth.synthesis import Design, verify
-from synth.task import load_shapes
+from synth.solution_file import load_solved
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -47,11 +46,11 @@ def check_file(
     Returns:
         The exit code.
     """
-    task, arms = load_shapes(solution)
-    designs = [Design(arm, verify(task, arm)) for arm in arms]
-    joint1 = hold_posture(task, arms[0]).joint1
+    found = load_solved(solution)
+    task, designs, arm = found.task, found.designs, found.robot
+    joint1 = hold_posture(task, arm).joint1
     readings = load_readings(measured, task.robot, joint1)
-    wanted = StandingArm.of(arms[0], joint1)
+    wanted = StandingArm.of(arm, joint1)
     examination = examine(
         readings, wanted, task.robot, sigma_of(marker_error), base_calibrated=base_calibrated
     )

@@ -48,10 +48,13 @@ def main() -> None:
 
 
 @main.command()
-@click.argument("task_file", metavar="TASK.yaml", type=click.Path(path_type=Path))
+@click.argument(
+    "task_files", metavar="TASK.yaml...", type=click.Path(path_type=Path), nargs=-1, required=True
+)
 @click.option(
     "-o", "--output", metavar="DIR", type=click.Path(path_type=Path),
-    help="Write solution.json, guide.pdf and markers.csv into this directory.",
+    help="Write solution.json, guide.pdf and markers.csv into this directory; of many tasks, into one for "
+    "each, with all solutions in sweep.sqlite.",
 )  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Print the solution as JSON and nothing else.")
 @click.option("--all", "show_all", is_flag=True, help="Show the alternative shapes, too.")
@@ -69,8 +72,12 @@ def main() -> None:
     "--time-limit", metavar="S", type=Seconds(min=0.0, min_open=True), default=math.inf,
     help="Stop after this many seconds and give the best shape so far.  [default: none]",
 )  # fmt: skip
+@click.option(
+    "--jobs", metavar="N", type=click.IntRange(min=1), default=1, show_default=True,
+    help="Solve so many tasks at once, each in a process of its own.",
+)  # fmt: skip
 def solve(
-    task_file: Path,
+    task_files: tuple[Path, ...],
     output: Path | None,
     *,
     as_json: bool,
@@ -80,29 +87,41 @@ def solve(
     prove: bool,
     why: bool,
     time_limit: float,
+    jobs: int,
 ) -> None:
     """Find a shape of the link for the targets in TASK.yaml.
+
+    Of several tasks, or of all in a folder, a table is printed, and with -o what was solved before is not
+    solved again. The time limit is then that of each task.
 
     Ctrl-C stops the search and gives the best shape so far; a second one ends at once.
     """
     from synth.cli.session import Session, run
 
+    many = len(task_files) > 1 or task_files[0].is_dir()
+    if many and (show_all or why or shape != 1):
+        raise click.UsageError("--all, --shape and --why are for one task.")
+    if not many and jobs != 1:
+        raise click.UsageError("--jobs is for several tasks.")
+
+    def sweep(session: Session) -> ExitCode:
+        from synth.cli.sweep import solve_files
+
+        return solve_files(
+            session, task_files, output,
+            as_json=as_json, seed=seed, prove=prove, time_limit=time_limit, jobs=jobs,
+        )  # fmt: skip
+
     def command(session: Session) -> ExitCode:
         from synth.cli.solve import solve_file
 
+        form = "json" if as_json else "text"
         return solve_file(
-            session,
-            task_file,
-            output,
-            form="json" if as_json else "text",
-            show_all=show_all,
-            shape=shape,
-            seed=seed,
-            prove=prove,
-            why=why,
-        )
+            session, task_files[0], output,
+            form=form, show_all=show_all, shape=shape, seed=seed, prove=prove, why=why,
+        )  # fmt: skip
 
-    sys.exit(run(command, time_limit))
+    sys.exit(run(sweep, math.inf) if many else run(command, time_limit))
 
 
 @main.command()
@@ -138,113 +157,5 @@ def inspect(config_file: Path, output: Path | None, form: str | None, seed: int,
         from synth.cli.inspect import inspect_file
 
         return inspect_file(session, config_file, output, form=form or "text", seed=seed, samples=samples)
-
-    sys.exit(run(command, math.inf))
-
-
-@main.command()
-@click.argument("measured", metavar="MEASURED", type=click.Path(path_type=Path))
-@click.argument("solution", metavar="SOLUTION", type=click.Path(path_type=Path))
-@click.option(
-    "-o", "--output", metavar="DIR", type=click.Path(path_type=Path),
-    help="Write check.json into this directory.",
-)  # fmt: skip
-@click.option("--json", "as_json", is_flag=True, help="Print the check as JSON and nothing else.")
-@click.option(
-    "--corrections-left", type=click.IntRange(min=0), default=3, show_default=True,
-    help="How many corrections you are still willing to make.",
-)  # fmt: skip
-@click.option(
-    "--marker-error", metavar="MM", type=click.FloatRange(0.001, 100.0), default=0.455, show_default=True,
-    help="Mean error of a marker in space.",
-)  # fmt: skip
-@click.option(
-    "--base-calibrated", is_flag=True,
-    help="Axis 1 is the z axis of the frame, found by turning joint 1; else its markers show it.",
-)  # fmt: skip
-@click.option(
-    "--confidence", type=click.FloatRange(0.5, 0.999), default=0.95, show_default=True,
-    help="Chance that all targets are within tolerance from which on to lock.",
-)  # fmt: skip
-@click.option("--stiff", is_flag=True, help="The link was stiff when it was measured: it will move no more.")
-@click.option(
-    "--settings", "settings_within", metavar="MM", type=click.FloatRange(0.0, 1000.0), default=0.0,
-    help="Say how to set base and tool after locking, each within so many millimetres.",
-)  # fmt: skip
-def check(
-    measured: Path,
-    solution: Path,
-    output: Path | None,
-    *,
-    as_json: bool,
-    corrections_left: int,
-    marker_error: float,
-    base_calibrated: bool,
-    confidence: float,
-    stiff: bool,
-    settings_within: float,
-) -> None:
-    """Say what to do with the link as it stands: lock it, correct it, or leave it at that.
-
-    MEASURED holds markers in the base frame, marker,x_mm,y_mm,z_mm; SOLUTION is the solution.json of the
-    task.
-
-    \b
-    Exit codes:
-      0  lock
-      1  do not lock: correct it as told, or there is nothing to gain
-      2  the measurement is not believed, or wrong input
-    """
-    from synth.cli.session import Session, run
-
-    def command(_session: Session) -> ExitCode:
-        from synth.cli.check import check_file
-
-        return check_file(
-            measured, solution, output,
-            as_json=as_json, corrections=corrections_left, marker_error=marker_error / 1000.0,
-            base_calibrated=base_calibrated, confidence=confidence, stiff=stiff,
-            settings_within=settings_within / 1000.0,
-        )  # fmt: skip
-
-    sys.exit(run(command, math.inf))
-
-
-@main.command()
-@click.argument("points", metavar="POINTS", type=click.Path(path_type=Path))
-@click.argument("solution", metavar="SOLUTION", type=click.Path(path_type=Path))
-@click.option("--json", "as_json", is_flag=True, help="Print the calibration as JSON and nothing else.")
-@click.option(
-    "--marker-error", metavar="MM", type=click.FloatRange(0.001, 100.0), default=0.455, show_default=True,
-    help="Mean error of a point in space.",
-)  # fmt: skip
-@click.option(
-    "--surface-rms", metavar="MM", type=click.FloatRange(0.001, 100.0), default=0.3, show_default=True,
-    help="How well the surface must be known, root mean square.",
-)  # fmt: skip
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the starts.")
-def calibrate(
-    points: Path, solution: Path, *, as_json: bool, marker_error: float, surface_rms: float, seed: int
-) -> None:
-    """Find the real arm from points of its end effector, after the link was stiffened.
-
-    POINTS holds x_mm,y_mm,z_mm in the base frame and, if they are known, joint1_deg,joint2_deg; SOLUTION is
-    the solution.json of the task.
-
-    \b
-    Exit codes:
-      0  the surface is known as well as asked
-      1  the points do not determine it, or fit no arm
-      2  wrong input
-    """
-    from synth.cli.session import Session, run
-
-    def command(_session: Session) -> ExitCode:
-        from synth.cli.calibrate import calibrate_file
-
-        return calibrate_file(
-            points, solution,
-            as_json=as_json, marker_error=marker_error / 1000.0, surface_rms=surface_rms / 1000.0, seed=seed,
-        )  # fmt: skip
 
     sys.exit(run(command, math.inf))

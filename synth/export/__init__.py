@@ -9,6 +9,7 @@ from synth.export.files import (
     prepare_directory,
     write_all,
     write_files,
+    write_planner_files,
     write_what_can_be,
 )
 from synth.export.inspection import (
@@ -18,13 +19,17 @@ from synth.export.inspection import (
     inspections_to_json,
     write_inspections,
 )
+from synth.export.json_data import plain
 from synth.export.markers import markers_csv
+from synth.export.planners import casadi_kinematics, kinematics_c_code
 from synth.export.sheet import draw_robot, draw_sheet
 from synth.export.solution_json import solution_to_json
+from synth.export.task_json import task_to_json
 
 __all__ = [
     "SOLUTION_FILES",
     "calibration_to_json",
+    "casadi_kinematics",
     "check_to_json",
     "draw_robot",
     "draw_sheet",
@@ -34,12 +39,16 @@ __all__ = [
     "inspections_to_json",
     "json_bytes",
     "json_text",
+    "kinematics_c_code",
     "markers_csv",
+    "plain",
     "prepare_directory",
     "refusal_to_json",
     "solution_to_json",
+    "task_to_json",
     "write_all",
     "write_files",
     "write_inspections",
+    "write_planner_files",
     "write_what_can_be",
 ]

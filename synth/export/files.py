@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 
 from synth.arrays import frozen_value
 from synth.checks import refuse_unless
-from synth.errors import SynthError, in_a_line
+from synth.errors import InputError, Mistake, SynthError, in_a_line
 from synth.export.markers import markers_csv
+from synth.export.planners import KINDS, kinds_of, planner_files
 from synth.export.sheet import draw_sheet
 from synth.export.solution_json import solution_to_json
 from synth.guide import make_guide
@@ -88,6 +89,35 @@ def write_what_can_be(solution: Solution, directory: str | os.PathLike[str]) -> 
         failed["guide.pdf"] = error
     files = {name: files[name] for name in SOLUTION_FILES if name in files}
     return Written(tuple(write_all(files, directory, without=failed)), failed)
+
+
+def write_planner_files(
+    solution: Solution, directory: str | os.PathLike[str], kinds: Iterable[str] = ()
+) -> list[Path]:
+    """Write files for planners and simulators, all of them or none; see `Solution.export`.
+
+    Args:
+        solution: A solution that holds a shape.
+        directory: Where to; it is made if it is not there. Files of these names are replaced.
+        kinds: Which: urdf, srdf, mjcf, xrdf, mesh, dh, c, trajectory. All of them if none is named; of a
+            shape that lacks ways no trajectory then.
+
+    Returns:
+        The paths of the files.
+
+    Raises:
+        InputError: There is no such kind.
+        NotFoundError: The solution holds no shape.
+        SynthError: A way is missing for a trajectory, or the files cannot be written. Files of an earlier
+            run are then as they were.
+    """
+    refuse_unless("solution", solution, Solution)
+    kinds = tuple(kinds) or kinds_of(solution)
+    unknown = [kind for kind in kinds if kind not in KINDS]
+    if unknown:
+        known = f"known are {', '.join(KINDS)}"
+        raise InputError([Mistake(f"is no kind of file; {known}", key=str(kind)) for kind in unknown])
+    return write_all(planner_files(solution, kinds), directory)
 
 
 def write_all(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,14 +13,13 @@ from synth.export.json_data import plain
 from synth.export.task_json import arcs_to_json, task_to_json
 from synth.guide import MARKERS, make_guide
 from synth.synthesis import Bound, Solution, target_results, worst_targets
-from synth.version import __version__
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.guide import Guide
     from synth.robot import Arm
-    from synth.synthesis import Design, Motion
+    from synth.synthesis import Design, Motion, Release
     from synth.task import Task
 
 SCHEMA = "synth.solution/2"
@@ -47,7 +47,7 @@ def solution_to_json(solution: Solution) -> dict[str, Any]:
     shape = dict.fromkeys(_SHAPE_FIELDS) if guide is None else _shape(guide)
     content = {
         "schema": SCHEMA,
-        "version": __version__,
+        "version": solution.version,
         "task": task_to_json(task),
         "status": solution.status.value,
         "message": solution.message,
@@ -59,16 +59,16 @@ def solution_to_json(solution: Solution) -> dict[str, Any]:
         **shape,
         "targets": _targets(task, designs[0]) if designs else _targets_missed(task),
         "targets_left_out": max(len(task.targets) - MOST_TARGETS, 0),
-        "ways": None if guide is None else [_way(motion) for motion in guide.ways],
+        "targets_unseen": designs[0].verification.unseen if designs else 0,
+        "ways": None if guide is None else [_way(motion) for motion in designs[0].ways or guide.ways],
         "figures": designs[0].figures if designs else None,
         "bound": _bound(solution.bound),
-        "releases": [
-            {"limit": each.limit, "amount": each.amount, "share": each.share, "sentence": each.sentence}
-            for each in solution.releases
-        ],
+        "explained": solution.explained,
+        "releases": [_release(task, each) for each in solution.releases],
         "notes": solution.notes,
+        "breakdown": solution.breakdown,
         "alternatives": [
-            _alternative(task, number, design)
+            {"shape": number, **_design(task, design)}
             for number, design in zip(solution.shape_numbers[1:], designs[1:], strict=True)
         ],
     }
@@ -84,12 +84,28 @@ _SHAPE_FIELDS = (
     "category_distances",
     "base",
     "link",
+    "rigid_link",
     "guide",
 )
 
 
 def _bound(bound: Bound | None) -> dict[str, object] | None:
-    return None if bound is None else {"lower_bound": bound.lower_bound, "gap": bound.gap}
+    return None if bound is None else {**asdict(bound), "gap": bound.gap}
+
+
+def _release(task: Task, release: Release) -> dict[str, object]:
+    """Return what would release a task: the task released, and the shape that then meets it."""
+    released = task_to_json(release.task)
+    if release.task.table == task.table:
+        del released["targets"]
+    return {
+        "limit": release.limit,
+        "amount": release.amount,
+        "share": release.share,
+        "sentence": release.sentence,
+        "task": released,
+        "design": _design(release.task, release.design),
+    }
 
 
 def _way(motion: Motion) -> dict[str, object]:
@@ -111,25 +127,29 @@ def _shape(guide: Guide) -> dict[str, object]:
         arm.category_distances,
         arm.base,
         {**_link(arm), "centreline": centreline},
+        _rigid_link(arm),
         _guide(guide),
     )
     return dict(zip(_SHAPE_FIELDS, values, strict=True))
 
 
-def _alternative(task: Task, number: int, design: Design) -> dict[str, object]:
+def _design(task: Task, design: Design) -> dict[str, object]:
     """Return another shape in short: enough to choose it, and to rebuild it from its arcs."""
     squared, check = _squared_distances(design.arm), design.verification
     return {
-        "shape": number,
         "distances": {pair: math.sqrt(s) for pair, s in squared.items()},
         "category": design.arm.category.value,
+        "base": design.arm.base,
         "link": _link(design.arm),
+        "rigid_link": _rigid_link(design.arm),
+        "ways": [_way(motion) for motion in design.ways],
         "figures": design.figures,
         "targets": [
             {
                 "name": task.table.names[index],
                 "miss": check.misses[index],
                 "within_tolerance": check.within_tolerance[index],
+                "joints": check.joints[index],
             }
             for index in _listed(task, design).tolist()
         ],
@@ -148,6 +168,11 @@ def _link(arm: Arm) -> dict[str, object]:
         "total_bend": shape.total_bend,
         "arcs": arcs_to_json(shape),
     }
+
+
+def _rigid_link(arm: Arm) -> dict[str, float]:
+    """Return d35 and d45 as they are, m; those of `distances` come out of the points, rounded."""
+    return {"d35": arm.d35, "d45": arm.d45}
 
 
 def _listed(task: Task, design: Design) -> NDArray[np.intp]:

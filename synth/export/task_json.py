@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.geometry import Box
+from synth.task import Floor
 
 if TYPE_CHECKING:
     from synth.robot import Interval, LinkShape, Robot
@@ -27,6 +28,7 @@ def task_to_json(task: Task) -> dict[str, object]:
         "base": task.base,
         "places": task.places,
         "floor": task.floor_height,
+        "floor_at_base": isinstance(task.floor, Floor),
         "topology": task.topology.value,
         "objective": task.objective.value,
         "targets": [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import re
@@ -68,6 +69,24 @@ class Document:
         """Take a mapping in Python; tuples, arrays, enumerations and paths are read as in a file."""
         document = cls()
         document.value = document._plain(mapping, ())
+        return document
+
+    @classmethod
+    def from_json(cls, text: str, file: str | None = None) -> Document:
+        """Take a JSON text that a program wrote: its mistakes have keys and no lines.
+
+        Args:
+            text: The text.
+            file: Name of the file that it stands in.
+
+        Raises:
+            InputError: It is no JSON.
+        """
+        document = cls(file)
+        try:
+            document.value = json.loads(text)
+        except (ValueError, RecursionError):
+            raise InputError([Mistake("is no JSON", file)]) from None
         return document
 
     def see_the_time(self, advice: str = "") -> None:

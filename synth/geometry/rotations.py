@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,8 +11,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from synth.arrays import FloatArray
-
-_GIMBAL_LOCK = 1.0 - 1e-12  # of |sin pitch|: there roll and yaw are about one axis
 
 
 def rotation_of(roll: ArrayLike, pitch: ArrayLike, yaw: ArrayLike) -> FloatArray:
@@ -28,10 +27,17 @@ def rotation_of(roll: ArrayLike, pitch: ArrayLike, yaw: ArrayLike) -> FloatArray
 
 
 def roll_pitch_yaw(rotation: FloatArray) -> tuple[float, float, float]:
-    """Return roll, pitch and yaw of a rotation matrix, shape (3, 3), rad; roll is 0 in gimbal lock."""
-    sine = float(np.clip(-rotation[2, 0], -1.0, 1.0))
-    pitch = float(np.arctan2(sine, np.hypot(rotation[2, 1], rotation[2, 2])))
-    if abs(sine) > _GIMBAL_LOCK:
-        return 0.0, pitch, float(np.arctan2(-rotation[0, 1], rotation[1, 1]))
-    roll = float(np.arctan2(rotation[2, 1], rotation[2, 2]))
-    return roll, pitch, float(np.arctan2(rotation[1, 0], rotation[0, 0]))
+    """Return the angles about the fixed axes x, y, z, in this order, rad: R = Rz(yaw) Ry(pitch) Rx(roll).
+
+    Where the pitch is a quarter turn, yaw and roll turn about one axis; the yaw is then what the matrix
+    says of it, and the roll the rest, so that the product is right to rounding all the same.
+
+    Args:
+        rotation: The rotation matrix, shape (3, 3).
+    """
+    r = rotation
+    pitch = math.atan2(-r[2, 0], math.hypot(r[0, 0], r[1, 0]))
+    yaw = math.atan2(r[1, 0], r[0, 0])
+    c, s = math.cos(yaw), math.sin(yaw)
+    roll = math.atan2(s * r[0, 2] - c * r[1, 2], c * r[1, 1] - s * r[0, 1])
+    return roll, pitch, yaw

@@ -54,6 +54,7 @@ from synth.measurement.markers import (
     rotation_matrix,
     sigma_of,
 )
+from synth.measurement.schema import measured_schema
 
 __all__ = [
     "MARKER_ERROR",
@@ -88,6 +89,7 @@ __all__ = [
     "load_readings",
     "marker_named",
     "marker_positions",
+    "measured_schema",
     "nearest_realisable",
     "onto_vertical",
     "rotation_matrix",

@@ -34,6 +34,7 @@ from synth.robot.link import (
     stepped,
     why_no_link,
 )
+from synth.robot.validity import keeps_clear
 from synth.robot.workspace import SurfaceMesh, Workspace
 
 __all__ = [
@@ -66,6 +67,7 @@ __all__ = [
     "clear_of_tube",
     "closest_joints",
     "into_turn",
+    "keeps_clear",
     "link_to_pose",
     "links_to_poses",
     "no_triangle",

@@ -2,28 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+import math
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from synth.arrays import FloatArray, frozen, frozen_value
-from synth.checks import Checks
-from synth.geometry import (
-    Category,
-    CategoryDistances,
-    Invariants,
-    SweptCircle,
-    WorkspaceSurface,
-    classify,
-    squared_distances,
-)
-from synth.robot.base_pose import BasePose
+from synth.robot.arm_in_shape import ArmInShape
+from synth.robot.closed_form import ClosedForm
 from synth.robot.closest_joints import closest_joints
-from synth.robot.hardware import Robot, into_turn
-from synth.robot.kinematics import Kinematics
-from synth.robot.link import LinkShape
+from synth.robot.hardware import into_turn
 
 _SAME_BRANCH = 1e-5  # rad; branches nearer than this are one, met twice
 
@@ -61,90 +50,15 @@ class JointBranches:
 
 
 @frozen_value
-class Arm:
-    """A robot with its link stiffened in one shape. Points are in the task frame, in metres.
+class Arm(ArmInShape):
+    """A robot with its link stiffened in one shape, with its forward and inverse kinematics.
 
-    Attributes:
-        robot: The hardware.
-        shape: The shape of the malleable link.
-        d35: Distance from P3 to the end effector P5, m.
-        d45: Distance from P4 to P5, m.
-        base: Where the robot stands.
+    Points are in the task frame, in metres; see `ArmInShape` for what it holds.
     """
 
-    robot: Robot
-    shape: LinkShape
-    d35: float
-    d45: float
-    base: BasePose = field(default_factory=BasePose)
-
-    def __post_init__(self) -> None:
-        checks = Checks(self)
-        checks.is_a("robot", Robot)
-        checks.is_a("shape", LinkShape)
-        checks.number("d35", above=0.0)
-        checks.number("d45", above=0.0)
-        checks.is_a("base", BasePose)
-        checks.refuse()
-
-    @property
-    def base_joint(self) -> FloatArray:
-        """P1 and P2 in the base frame, shape (2, 3), m."""
-        return np.array([[0.0, 0.0, 0.0], [0.0, 0.0, self.robot.d12]])
-
     @cached_property
-    def end_frame(self) -> tuple[FloatArray, FloatArray]:
-        """The link's end at theta1 = 0 in the base frame: rotation (3, 3) and position p (3,), m.
-
-        The columns of the rotation: u (axis 2, from P3 to P4), t x u, and t (along the link).
-        """
-        rotation, position = self.shape.end_frame()
-        return rotation, position + self.base_joint[1]
-
-    @cached_property
-    def axis_points(self) -> FloatArray:
-        """P1, P2, P3, P4 at theta1 = 0 in the base frame, shape (4, 3), m."""
-        rotation, position = self.end_frame
-        p3 = position - self.robot.tip_offset * rotation[:, 0]
-        p4 = p3 + self.robot.d34 * rotation[:, 0]
-        return frozen(np.vstack([self.base_joint, p3, p4]))
-
-    @cached_property
-    def circle(self) -> SweptCircle:
-        """The circle of P5 about axis 2, at theta1 = 0, in the base frame."""
-        offset, radius = self.robot.end_effector_circle(self.d35, self.d45)
-        rotation, position = self.end_frame
-        return SweptCircle(position + offset * rotation[:, 0], rotation[:, 0], float(radius))
-
-    @cached_property
-    def squared_distances(self) -> FloatArray:
-        """Squared distances of P1..P5, shape (5, 5), m^2; s15 and s25 are those at theta2 = pi."""
-        return frozen(squared_distances(np.vstack([self.axis_points, self.kinematics.forward(0.0, np.pi)])))
-
-    @cached_property
-    def surface(self) -> WorkspaceSurface:
-        """The workspace surface Gamma = 0, in the base frame."""
-        return self.circle.surface(self.robot.d12, self.robot.d34)
-
-    @cached_property
-    def invariants(self) -> Invariants:
-        """The five numbers (a, alpha, z0, h, R) that determine the surface."""
-        return Invariants.from_circle(self.circle)
-
-    @cached_property
-    def category_distances(self) -> CategoryDistances:
-        """How far the shape is from each special category."""
-        return CategoryDistances.from_invariants(self.invariants, self.robot.d12)
-
-    @property
-    def category(self) -> Category:
-        """The kind of arm that this shape is."""
-        return classify(self.category_distances)
-
-    @cached_property
-    def kinematics(self) -> Kinematics:
-        """The two joints, in the base frame."""
-        return Kinematics(self.end_frame[0], self.circle.centre, np.asarray(self.circle.radius))
+    def _closed_form(self) -> ClosedForm:
+        return ClosedForm(self.kinematics, self.robot.joint_limits)
 
     def forward_kinematics(self, theta1: ArrayLike, theta2: ArrayLike) -> FloatArray:
         """Return the end effector P5 for joint angles, in the task frame.
@@ -160,7 +74,34 @@ class Arm:
         """
         return self.base.to_task(self.kinematics.forward(theta1, theta2))
 
-    def inverse_kinematics(self, points: ArrayLike, *, within_limits: bool = True) -> JointBranches:
+    def jacobian(self, joints: ArrayLike) -> FloatArray:
+        """Return the derivatives of P5 by the joint angles, in the task frame.
+
+        Args:
+            joints: Angles (theta1, theta2), shape (..., 2), rad.
+
+        Returns:
+            J, shape (..., 3, 2), m/rad: each column is the velocity of P5 while one joint turns at 1 rad/s.
+        """
+        angles = np.asarray(joints, dtype=np.float64)
+        reached = self.kinematics.forward(angles[..., 0], angles[..., 1])
+        by_joint = np.stack(self.kinematics.velocities(angles, reached), axis=-1)
+        return np.asarray(self.base.rotation @ by_joint)
+
+    def manipulability(self, joints: ArrayLike) -> FloatArray:
+        """Return sqrt(det(J^T J)), shape (...), m^2/rad^2: the area that unit joint velocities span.
+
+        It is 0 where P5 can move in one direction only: on axis 1, and at the rims of the workspace.
+
+        Args:
+            joints: Angles (theta1, theta2), shape (..., 2), rad.
+        """
+        columns = self.jacobian(joints)
+        return np.asarray(np.linalg.norm(np.cross(columns[..., 0], columns[..., 1]), axis=-1))
+
+    def inverse_kinematics(
+        self, points: ArrayLike, *, within_limits: bool = True, within: float = math.inf
+    ) -> JointBranches:
         """Return all joint angles that bring the end effector to points of the workspace.
 
         In closed form, then polished. Where axis 2 is skew to axis 1 a point of the workspace has one
@@ -169,11 +110,17 @@ class Arm:
         Args:
             points: Points in the task frame, shape (..., 3), m.
             within_limits: Whether branches beyond the joint limits are dropped.
+            within: Largest miss of a branch, m; others are dropped. With a small one it is ten times as
+                fast: only what is near the workspace is polished.
 
         Returns:
             The branches; a point off the workspace has none with a small miss.
         """
         point = self.base.to_base(points)
+        if within < math.inf:
+            flat, shape = point.reshape(-1, 3), point.shape[:-1]
+            joints, miss = self._closed_form.branches(flat, within, within_limits=within_limits)
+            return JointBranches(joints.reshape(*shape, 2, 2), miss.reshape(*shape, 2))
         limits = self.robot.joint_limits
         joints = self.kinematics.polished(self.kinematics.branches(point), point[..., None, :])
         for joint, interval in enumerate((limits.base, limits.second)):

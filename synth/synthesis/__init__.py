@@ -3,6 +3,7 @@
 from synth.synthesis.blocking import explain
 from synth.synthesis.bound import Bound
 from synth.synthesis.check import TargetResult, Verification, Violation, target_results, verify, worst_targets
+from synth.synthesis.search import ALTERNATIVES
 from synth.synthesis.shapes import TargetsSeen
 from synth.synthesis.solution import (
     NotFoundError,
@@ -19,22 +20,32 @@ from synth.synthesis.solution import (
 )
 from synth.synthesis.solve import solve
 from synth.synthesis.wanted import (
+    MOST_MOTIONS,
     Design,
     Displacements,
+    Figures,
     Forgiveness,
+    Margins,
     Motion,
     displaced,
     motions,
     rotations,
+    way_is_clear,
     ways_and_forgiveness,
 )
 from synth.watch import Progress, Timing
 
 __all__ = [
+    "ALTERNATIVES",
+    "HAND_PLACES",
+    "HAND_TURNS",
+    "MOST_MOTIONS",
     "Bound",
     "Design",
     "Displacements",
+    "Figures",
     "Forgiveness",
+    "Margins",
     "Motion",
     "NotFoundError",
     "Progress",
@@ -60,6 +71,7 @@ __all__ = [
     "solve",
     "target_results",
     "verify",
+    "way_is_clear",
     "ways_and_forgiveness",
     "worst_targets",
 ]

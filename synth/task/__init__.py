@@ -6,6 +6,7 @@ from synth.task.entry_types import (
     TEXT,
     LengthUnit,
     Name,
+    Pair,
     Position,
     Positive,
     Strict,
@@ -15,9 +16,8 @@ from synth.task.hardware_distances import off_the_hardware
 from synth.task.model import Floor, Objective, Obstacle, Task, Topology
 from synth.task.reading import as_path, as_task, load_robot, load_task, named_robot, parse_task, robot_within
 from synth.task.robot_schema import FileOfARobot, RobotEntry
-from synth.task.schema import task_schema
+from synth.task.schema import json_schema, robot_schema, task_schema
 from synth.task.sizes import PER_METRE
-from synth.task.solution_file import load_shapes
 from synth.task.targets import DEFAULT_TOLERANCE, Approach, PointTarget, TargetTable
 from synth.task.wording import validate
 
@@ -34,6 +34,7 @@ __all__ = [
     "Name",
     "Objective",
     "Obstacle",
+    "Pair",
     "PointTarget",
     "Position",
     "Positive",
@@ -45,12 +46,13 @@ __all__ = [
     "absent",
     "as_path",
     "as_task",
+    "json_schema",
     "load_robot",
-    "load_shapes",
     "load_task",
     "named_robot",
     "off_the_hardware",
     "parse_task",
+    "robot_schema",
     "robot_within",
     "task_schema",
     "validate",

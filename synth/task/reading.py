@@ -99,7 +99,7 @@ def load_robot(path: str | os.PathLike[str]) -> Robot:
     """Read a robot file.
 
     Args:
-        path: The file.
+        path: The file, or the name of a preset.
 
     Returns:
         The robot in metres and radians; its name is that of the file if it states none.
@@ -107,6 +107,8 @@ def load_robot(path: str | os.PathLike[str]) -> Robot:
     Raises:
         InputError: The file cannot be read or is wrong; with every mistake, in the order of the file.
     """
+    if isinstance(path, str) and path in PRESETS:
+        return PRESETS[path]
     path = as_path(path)
     return _robot(read_file(path), name=path.stem)
 

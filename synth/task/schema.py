@@ -26,7 +26,7 @@ from synth.task.entry_types import (
     without_case,
 )
 from synth.task.model import Floor, Objective, Topology
-from synth.task.robot_schema import FileOfARobot
+from synth.task.robot_schema import FileOfARobot, RobotFile
 
 
 def _at_base() -> Any:
@@ -186,9 +186,19 @@ class SurfaceTaskFile(TaskFile):
     )
 
 
+def robot_schema() -> dict[str, Any]:
+    """Return the JSON Schema of robot files."""
+    return json_schema(RobotFile.model_json_schema())
+
+
 def task_schema() -> dict[str, Any]:
     """Return the JSON Schema of task files, for editors that complete and check YAML."""
     schema = TaskFile.model_json_schema()
     schema["required"] = [key for key in schema["required"] if key != "targets"]
     schema["anyOf"] = [{"required": ["targets"]}, {"required": ["surface"]}]
+    return json_schema(schema)
+
+
+def json_schema(schema: dict[str, Any]) -> dict[str, Any]:
+    """Return a schema with the name of its draft, so that it can stand alone."""
     return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | schema

@@ -40,6 +40,7 @@ _SENTENCES = {
     "literal_error": "must be {expected}, but is {value}",
     "enum": "must be {expected}, but is {value}",
     "finite_number": "must be a finite number, but is {value}",
+    "greater_than": "must be greater than {gt:g}, but is {value}",
     "not_positive": "must be greater than 0, but is {value}",
     "greater_than_equal": "must be at least {ge:g}, but is {value}",
     "less_than_equal": "must be at most {le:g}, but is {value}",

@@ -7,11 +7,13 @@ from synth.measurement.distances.misprint import Misprint, Suspect, find_misprin
 from synth.measurement.distances.nearest import Fit, Nearest, nearest_realisable
 from synth.measurement.distances.reading import load_measurements
 from synth.measurement.distances.sampling import Samples, Spread, sample_shapes
+from synth.measurement.distances.schema import MeasuredFile
 
 __all__ = [
     "Fit",
     "Inspection",
     "LinkFit",
+    "MeasuredFile",
     "Measurement",
     "Misprint",
     "Nearest",

@@ -6,7 +6,7 @@ import csv
 import difflib
 import json
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from synth.errors import InputError, Mistake
 
@@ -19,11 +19,31 @@ _MAX_BYTES = 50_000_000
 
 
 UNITS = {"mm": 1000.0, "m": 1.0}  # to divide by
-_OTHERS = ("joint1_deg", "joint2_deg", "frame")
-_COLUMNS = ("marker", *(f"{axis}_{unit}" for unit in UNITS for axis in "xyz"), *_OTHERS)
+_COLUMNS = {
+    "marker": "P1 to P5; A1:150 and A2:-50.5 on the axes, E:-60 at the link's end, L050 on the link, in mm",
+    **{f"{axis}_{unit}": f"{axis} in the base frame, {unit}" for unit in UNITS for axis in "xyz"},
+    "joint1_deg": "where joint 1 stood, degrees; absent: the angle to hold of the solution",
+    "joint2_deg": "where joint 2 stood, degrees; absent: 180",
+    "frame": "number of the frame; the mean of a marker's frames counts",
+}
 
 
 Row = tuple[int, dict[str, object]]
+
+
+def row_schema() -> dict[str, Any]:
+    """Return the JSON Schema of a row: a line of JSON, or of a CSV file with these columns."""
+    cells = {
+        name: {"type": "string"} if name == "marker" else {"type": ["number", "string", "null"]}
+        for name in _COLUMNS
+    }
+    return {
+        "title": "Row",
+        "type": "object",
+        "properties": {name: {**cell, "description": _COLUMNS[name]} for name, cell in cells.items()},
+        "oneOf": [{"required": [f"{axis}_{unit}" for axis in "xyz"]} for unit in UNITS],
+        "additionalProperties": False,
+    }
 
 
 def text_of(path: Path, file: str) -> str:

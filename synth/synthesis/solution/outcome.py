@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from synth.arrays import frozen_value
 from synth.synthesis.solution.message import Status
+from synth.version import __version__
 
 if TYPE_CHECKING:
     from synth.synthesis.bound import Bound
@@ -56,6 +57,7 @@ class Outcome:
         explained: Whether `explain` has looked for releases, be it in vain.
         breakdown: The traceback of what broke off the search and nobody foresaw; empty mostly.
         shape: Which of the shapes, counted from the best, `designs` begins with; see `showing`.
+        version: Version of synth that found it.
     """
 
     task: Task
@@ -72,6 +74,7 @@ class Outcome:
     breakdown: str = ""
     shape: int = 1
     explained: bool = False
+    version: str = __version__
 
     @property
     def shape_numbers(self) -> tuple[int, ...]:

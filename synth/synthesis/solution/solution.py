@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 from synth.arrays import frozen_value
 from synth.errors import SynthError
+from synth.robot import keeps_clear
 from synth.rounding import counted
 from synth.synthesis.check import TargetResult, target_results
 from synth.synthesis.solution.message import message
@@ -15,8 +17,21 @@ from synth.synthesis.solution.outcome import Outcome
 from synth.synthesis.solution.summary import summary
 
 if TYPE_CHECKING:
+    import os
+    from collections.abc import Mapping
+    from pathlib import Path
+    from types import ModuleType
+
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
     from synth.robot import Arm
     from synth.synthesis.wanted import Design
+
+
+def _package() -> ModuleType:
+    """Return the package, whose public names a solution may use as a user does: files lie above it."""
+    return import_module("synth")
 
 
 class NotFoundError(SynthError):
@@ -63,6 +78,58 @@ class Solution(Outcome):
             NotFoundError: There is none.
         """
         return target_results(self.task, self.best.arm, self.best.verification)
+
+    @classmethod
+    def from_json(cls, source: str | Mapping[str, object]) -> Solution:
+        """Return a solution from a JSON text, or from the mapping that `solution_to_json` returned.
+
+        It is verified again; `synth.load_solution` does the same with a file.
+
+        Args:
+            source: The text or the mapping.
+
+        Raises:
+            InputError: It is no solution, or what it says of a shape is not true; with every mistake.
+        """
+        read: Solution = _package().solution_from_json(source)
+        return read
+
+    def clear(self, joints: ArrayLike) -> NDArray[np.bool_]:
+        """Return whether the best shape is within its joint limits, and clear of everything.
+
+        Args:
+            joints: Angles (theta1, theta2), shape (..., 2), rad.
+
+        Returns:
+            Whether obstacles, floor and the arm itself leave each posture free, shape (...): for the validity
+            function of a sampling planner.
+
+        Raises:
+            NotFoundError: There is no shape.
+        """
+        task, arm = self.task, self.robot
+        solids = [obstacle.solid for obstacle in task.obstacles_from(arm.base)]
+        return keeps_clear(arm, joints, solids, floor=task.floor_in_base)
+
+    def export(self, directory: str | os.PathLike[str], *kinds: str) -> list[Path]:
+        """Write files of the best shape for planners and simulators, all of them or none.
+
+        Args:
+            directory: Where to; it is made if it is not there. Files of these names are replaced.
+            kinds: Which: "urdf", "srdf", "mjcf", "xrdf", "mesh", "dh", "c", "trajectory". All of them if none
+                is named; of a shape that lacks ways no trajectory then.
+
+        Returns:
+            The paths of the files.
+
+        Raises:
+            InputError: There is no such kind.
+            NotFoundError: There is no shape.
+            SynthError: A way is missing for a trajectory, or they cannot be written. Files of an earlier run
+                are then as they were.
+        """
+        paths: list[Path] = _package().write_planner_files(self, directory, kinds)
+        return paths
 
     def __str__(self) -> str:
         """Return a headline, what is known, and a few bullets: what the terminal shows of it."""

@@ -2,17 +2,23 @@
 
 from synth.synthesis.wanted.design import Design
 from synth.synthesis.wanted.displaced import Displacements, displaced, rotations
+from synth.synthesis.wanted.figures import Figures
 from synth.synthesis.wanted.forgiveness import Forgiveness
 from synth.synthesis.wanted.judging import judged, ways_and_forgiveness
+from synth.synthesis.wanted.margins import Margins
 from synth.synthesis.wanted.motion import Motion
 from synth.synthesis.wanted.ranking import best_of, leaves_no_wish, objective, preferred_designs
+from synth.synthesis.wanted.surroundings import way_is_clear
 from synth.synthesis.wanted.wanted_shapes import wished
-from synth.synthesis.wanted.ways import motions
+from synth.synthesis.wanted.ways import MOST_MOTIONS, motions
 
 __all__ = [
+    "MOST_MOTIONS",
     "Design",
     "Displacements",
+    "Figures",
     "Forgiveness",
+    "Margins",
     "Motion",
     "best_of",
     "displaced",
@@ -22,6 +28,7 @@ __all__ = [
     "objective",
     "preferred_designs",
     "rotations",
+    "way_is_clear",
     "ways_and_forgiveness",
     "wished",
 ]

@@ -51,7 +51,7 @@ def judged(task: Task, design: Design, is_up: Callable[[], bool] = never) -> Des
         shortfall=margins.shortfall(Margins.wanted(task.robot)),
         forgiveness=hand_forgiveness(task, arm, check.joints),
         largest_swing=max(swings, default=0.0),
-        travel=sum(way.travel for way in ways),
+        travel=sum((way.travel for way in ways), 0.0),
         bend=arm.shape.bending_energy,
         change=None if task.current is None else _change(arm.shape, task.current),
     )

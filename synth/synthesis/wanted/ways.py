@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.checks import refuse_unless
-from synth.robot import ArmBody, clear_of_obstacles, clear_of_tube, turned
-from synth.synthesis.check import joints_reaching, seen_by
+from synth.robot import turned
+from synth.synthesis.check import joints_reaching
 from synth.synthesis.wanted.design import Design
 from synth.synthesis.wanted.margins import joint_shortfalls
 from synth.synthesis.wanted.motion import Motion, travel_of
 from synth.synthesis.wanted.shortest_path import shortest_path
+from synth.synthesis.wanted.surroundings import Surroundings
 from synth.task import Task
 from synth.watch import never
 
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
-    from synth.geometry import Solid
+    from synth.robot import Arm, ArmBody
 
 MOST_MOTIONS = 50  # of more targets nobody asks for the ways between them
 
@@ -70,7 +71,7 @@ def routed(
         is_up: Asked often whether to look for no more ways around obstacles.
     """
     postures = joints_reaching(task, design.arm, design.verification)
-    ways = _Surroundings(task, design, is_up).ways(postures)
+    ways = _WaysAround(task, design.arm, is_up).ways(postures)
     cramped = [_CRAMPED * joint_shortfalls(task.robot, joints) for joints in postures]
     # To each posture of a target the least cost so far, rad, and which postures are taken on the way there.
     best: list[tuple[float, tuple[int, ...]]]
@@ -95,16 +96,12 @@ def _cost(way: FloatArray) -> float:
     return travel_of(way) if len(way) else _NO_WAY
 
 
-class _Surroundings:
-    """What an arm may bump into as its joints move."""
+class _WaysAround(Surroundings):
+    """The ways of an arm between postures, straight or around what is in between."""
 
-    def __init__(self, task: Task, design: Design, is_up: Callable[[], bool]) -> None:
+    def __init__(self, task: Task, arm: Arm, is_up: Callable[[], bool]) -> None:
+        super().__init__(task, arm)
         self._is_up = is_up
-        self._body = ArmBody(design.arm)
-        self._limits = task.robot.joint_limits
-        self._solids: list[Solid] = list(seen_by(task, design.arm))
-        # For the rod only: joint 1 keeps all heights, so the tube stays where it is over the floor.
-        self._floor = task.lowest_from(task.base)
 
     def ways(self, postures: Sequence[FloatArray]) -> list[dict[tuple[int, int], FloatArray]]:
         """Return for each target but the last a way from each of its postures to each of the next target's.
@@ -137,46 +134,14 @@ class _Surroundings:
         """Put the first way around what is in between in the place of one that is not clear."""
         # The arm's own clearance and that of the floor depend on joint 2 alone, and every way passes all
         # angles between its ends: without obstacles, where the straight way is closed, all are.
-        for pair, (_, start, end) in some.items() if self._solids else ():
+        for pair, (_, start, end) in some.items() if self.solids else ():
             ways[pair] = self._way_around(start, end)
             if len(ways[pair]):
                 break
 
-    def clear(self, start: FloatArray, end: FloatArray) -> NDArray[np.bool_]:
-        """Return whether straight ways, shape (n, 2), are certainly clear."""
-        clear = self._clear_of_itself(start[:, 1], end[:, 1])
-        some = np.flatnonzero(clear)
-        if self._solids and len(some):
-            least = clear_of_obstacles(self._body, start[some], self._solids, end=end[some], enough=0.0)
-            clear[some] = least.min(axis=(1, 2)) >= self._body.clear
-        return clear
-
-    def _clear_of_itself(self, start: FloatArray, end: FloatArray) -> NDArray[np.bool_]:
-        """Return whether the rod is clear of tube and floor as theta2 goes from start to end, shape (n,)."""
-        # Mostly all is clear between the least and the largest angle: one question in place of n.
-        whole = np.array([min(start.min(), end.min())]), np.array([max(start.max(), end.max())])
-        for ways in (whole, (start, end)):
-            least = np.minimum(clear_of_tube(self._body, *ways, enough=0.0), self._over_floor(*ways))
-            if (least >= self._body.clear).all():
-                return np.ones(len(start), dtype=np.bool_)
-        return np.asarray(least >= self._body.clear)
-
-    def _over_floor(self, start: FloatArray, end: FloatArray) -> FloatArray:
-        """Return how far the rod stays over the floor as theta2 goes from start to end, shape (n,), m.
-
-        The height of P5 is z = c_z + R (sin(theta2) v_z - cos(theta2) t_z), least at atan2(-v_z, t_z).
-        """
-        body, kinematics = self._body, self._body.arm.kinematics
-        lower, upper = np.minimum(start, end), np.maximum(start, end)
-        lowest = np.arctan2(-kinematics.frame[2, 1], kinematics.frame[2, 2])
-        lowest = lowest + 2.0 * np.pi * np.ceil((lower - lowest) / (2.0 * np.pi))
-        angles = np.stack([start, end, np.where(lowest <= upper, lowest, start)])
-        heights = kinematics.forward(0.0, angles)[..., 2].min(axis=0)
-        return np.asarray(np.minimum(heights, body.arm.end_frame[1][2]) - body.rod_radius - self._floor)
-
     def _way_around(self, start: FloatArray, end: FloatArray) -> FloatArray:
         """Return a way through the grid, straightened, or none."""
-        first, second = self._limits.base, self._limits.second
+        first, second = self.limits.base, self.limits.second
         theta1 = np.linspace(first.lower, first.upper, _GRID[0])
         theta2 = np.linspace(second.lower, second.upper, _GRID[1])
         grid = np.stack(np.meshgrid(theta1, theta2, indexing="ij"), axis=-1)
@@ -219,16 +184,16 @@ class _Surroundings:
             theta1: Angles of joint 1, rad.
             theta2: Angles of joint 2, rad; both broadcast.
         """
-        body = self._body
+        body = self.body
         share = np.linspace(0.0, 1.0, _SAMPLES)
         tube = body.tube(body.tube_radius + share * (body.arm.shape.length - body.tube_radius))
         joint = min(body.arm.robot.link.diameter, body.rod_length)
         rod = body.rod(joint + share * (body.rod_length - joint), theta2[..., None])
         apart = np.linalg.norm(rod[..., None, :] - tube[_before_the_joint(body, share)], axis=-1)
         least = apart.min(axis=(-2, -1)) - body.tube_radius - body.rod_radius
-        least = np.minimum(least, rod[..., 2].min(axis=-1) - body.rod_radius - self._floor)
+        least = np.minimum(least, rod[..., 2].min(axis=-1) - body.rod_radius - self.floor)
         tube, rod = turned(tube, theta1[..., None]), turned(rod, theta1[..., None])
-        for solid in self._solids:
+        for solid in self.solids:
             if self._is_up():
                 shape = np.broadcast_shapes(theta1.shape, theta2.shape)
                 return np.full(shape, -np.inf)  # nothing is known to be clear

@@ -1,0 +1,72 @@
+"""The commands that serve other programs; what they do is in the modules of their names."""
+
+from __future__ import annotations
+
+import math
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from synth.cli.exit_codes import ExitCode
+
+
+@click.command()
+@click.argument("kind", metavar="KIND", type=click.Choice(["task", "robot", "solution", "measured"]))
+def schema(kind: str) -> None:
+    """Print what a file may hold, as JSON Schema (draft 2020-12).
+
+    KIND is task, robot, solution (solution.json) or measured: the rows of a file of markers, or the YAML
+    file of `synth inspect`.
+    """
+    from synth.cli.session import Session, run
+
+    def command(_session: Session) -> ExitCode:
+        from synth.cli.schema import print_schema
+
+        return print_schema(kind)
+
+    sys.exit(run(command, math.inf))
+
+
+@click.command()
+@click.argument("solution", metavar="SOLUTION.json", type=click.Path(path_type=Path))
+@click.option(
+    "-o", "--output", metavar="DIR", type=click.Path(path_type=Path), required=True,
+    help="Write the files into this directory.",
+)  # fmt: skip
+@click.option("--urdf", is_flag=True, help="robot.urdf, and the mesh that it shows.")
+@click.option("--srdf", is_flag=True, help="robot.srdf: the group, a state at each target.")
+@click.option("--mjcf", is_flag=True, help="robot.xml for MuJoCo, with targets and obstacles.")
+@click.option("--xrdf", is_flag=True, help="robot.xrdf: collision spheres, beside the URDF.")
+@click.option("--mesh", is_flag=True, help="The workspace as STL, PLY and GLB.")
+@click.option("--dh", is_flag=True, help="dh.json: Denavit-Hartenberg parameters.")
+@click.option("--c", "c", is_flag=True, help="kinematics.c: forward kinematics and Jacobian.")
+@click.option("--trajectory", is_flag=True, help="Through the targets, as CSV and JSON.")
+@click.option(
+    "--shape", metavar="K", type=click.IntRange(min=1), default=1,
+    help="Export the K-th shape of the file.  [default: 1, the one it tells of first]",
+)  # fmt: skip
+def export(solution: Path, output: Path, *, shape: int, **kinds: bool) -> None:
+    """Write files for planners and simulators: of the kinds that are named, or of all.
+
+    SOLUTION.json is the file of a solution; it is verified again. All files are in metres and radians.
+
+    \b
+    Exit codes:
+      0  all files are written
+      2  wrong input, and nothing is written
+    """
+    from synth.cli.session import Session, run
+
+    def command(_session: Session) -> ExitCode:
+        from synth.cli.export import export_file
+
+        return export_file(solution, output, [kind for kind, asked in kinds.items() if asked], shape)
+
+    sys.exit(run(command, math.inf))
+
+
+COMMANDS = (export, schema)

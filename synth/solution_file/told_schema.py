@@ -1,0 +1,137 @@
+"""What `solution.json` tells of a shape and of the search, beside task and link: the pydantic models.
+
+Infinity is null: a margin where there is no limit, a best miss where there is no shape.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from synth.solution_file.task_schema import Joints, Length, Number, Part, Point
+
+Share = Annotated[float, Field(ge=0.0, le=1.0)]
+
+
+class TimePart(Part):
+    """Where the time went, s."""
+
+    total: Length = Field(description="from call to return, s")
+    screening: Length = Field(description="finding start points, s")
+    solving: Length = Field(description="building and running the nonlinear program, s")
+    verifying: Length = Field(description="checking what it found, s")
+    proving: Length = Field(default=0.0, description="bounding what any shape can do, s")
+
+
+class GammaPart(Part):
+    """The workspace surface, Gamma(x, y, z) = 0."""
+
+    q: Annotated[list[float], Field(min_length=6, max_length=6)] = Field(description="q0 to q5, in metres")
+
+
+class InvariantsPart(Part):
+    """The numbers that determine the surface."""
+
+    a: Number = Field(description="distance of the axes, m")
+    alpha: Number = Field(description="angle between them, rad")
+    z0: Number = Field(description="height of the common normal on axis 1, m")
+    h: Number = Field(description="from it to the circle's centre along axis 2, m")
+    R: Number = Field(description="radius of the circle, m")
+
+
+class WayPart(Part):
+    """How the arm gets from one target to the next."""
+
+    start: str = Field(alias="from", description="name of the target that it leaves")
+    end: str = Field(alias="to", description="name of the target that it gets to")
+    found: bool = Field(default=True, description="whether there is a way")
+    joints: list[Joints] = Field(description="[theta1, theta2] passed, straight in between, rad")
+
+
+class MarginsPart(Part):
+    """Distances from limits; null where there is no limit."""
+
+    joint1: Number | None = Field(description="of joint 1, rad")
+    joint2: Number | None = Field(description="of joint 2, rad")
+    length: Number | None = Field(description="of the link's length, m")
+    bend_radius: Number | None = Field(description="of the smallest bend radius, m")
+    total_bend: Number | None = Field(description="of the total bend, rad")
+    clearance: Number | None = Field(description="of the arm from obstacles, m")
+
+
+class ForgivenessPart(Part):
+    """What becomes of the task after a hand placed the link."""
+
+    expected_worst_miss: Length | None = Field(description="mean of the largest miss, m")
+    chance: Share = Field(description="share of errors with which all targets are reached")
+
+
+class FiguresPart(Part):
+    """What a shape is like to work with."""
+
+    ways_missing: int = Field(ge=0, description="from how many targets no way leads to the next")
+    margins: MarginsPart = Field(description="distances from limits")
+    shortfall: Length = Field(description="what is missing of the margins, in shares")
+    forgiveness: ForgivenessPart = Field(description="what a hand leaves")
+    largest_swing: Length = Field(description="the most that a joint turns between two targets, rad")
+    travel: Length = Field(description="of the joint that turns more, over all ways, rad")
+    bend: Length = Field(description="integral of curvature squared along the link, 1/m")
+    change: Length | None = Field(default=None, description="distance from the present shape, m; null: none")
+
+
+class BoundPart(Part):
+    """What is proven of the worst miss over all shapes."""
+
+    lower_bound: Number = Field(description="no shape has a smaller worst weighted miss, m")
+    gap: Number | None = Field(default=None, description="how much worse the best shape found may be, m")
+    best_found: Length | None = Field(default=None, description="least worst weighted miss found, m")
+    tightest_tolerance: Length | None = Field(default=None, description="of all targets, m")
+    boxes: int = Field(default=0, ge=0, description="how many boxes of shapes were looked at")
+    left_out: list[str] = Field(default=[], description="what the proof does not know of the task")
+    weighted: bool = Field(default=False, description="whether the tolerances differ")
+
+
+class HoldPart(Part):
+    """The posture in which the link is bent."""
+
+    joint1: Number = Field(description="angle of joint 1, rad")
+    joint2: Number = Field(description="angle of joint 2, rad")
+    clear: bool = Field(description="whether the bent arm is clear there of everything")
+
+
+class AxisPart(Part):
+    """Axis 2 at the hold posture, in the task frame."""
+
+    point: Point = Field(description="the link's end, m")
+    direction: Point = Field(description="unit vector from P3 to P4")
+    elevation: Number = Field(description="of the direction over the horizontal, rad")
+    heading: Number | None = Field(description="of the direction about the vertical, rad; null: vertical")
+
+
+class StationPart(Part):
+    """A point of the link at the hold posture."""
+
+    name: str = Field(description="how the guide calls it")
+    arc_length: Number = Field(description="distance from P2 along the link, m")
+    position: Point = Field(description="[x, y, z] in the task frame, m")
+
+
+class TolerancePart(Part):
+    """How far axis 2 may be off; null where there is no such number."""
+
+    position: Length | None = Field(description="shift of axis 2, m")
+    position_target: str = Field(description="the target that is lost first")
+    direction: Length | None = Field(description="tilt of axis 2, rad")
+    direction_target: str = Field(description="the target that is lost first")
+
+
+class GuidePart(Part):
+    """Where everything is while the link is bent."""
+
+    hold: HoldPart = Field(description="joint angles to hold")
+    markers: dict[str, Point] = Field(description="P1 to P4 in the task frame, m")
+    axis2: AxisPart = Field(description="axis 2")
+    centreline: list[StationPart] = Field(description="points along the link")
+    tolerance: TolerancePart | None = Field(default=None, description="how precisely; null: not met")
+    forgiveness: ForgivenessPart | None = Field(default=None, description="what a hand leaves")
