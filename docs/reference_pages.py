@@ -14,9 +14,9 @@ from pathlib import Path
 from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 from ruamel.yaml import YAML
-from solution_keys import SOLUTION_KEYS
 
 from synth.measurement.distances.schema import MeasuredFile
+from synth.solution_file.schema import SolutionFile
 from synth.task.robot_schema import RobotFile
 from synth.task.schema import TaskFile
 
@@ -27,6 +27,8 @@ LENGTHS = [
     "d24", "d25", "d34", "d35", "d45", "floor", "min_bend_radius", "diameter", "tip_offset",
     "rounding", "sigma",
 ]  # fmt: skip
+# Parts of a solution that have a page of their own, or are described in the same file already.
+ELSEWHERE = ("task.", "releases[].task.", "releases[].design.", "alternatives[].")
 UNITS = (
     dict.fromkeys(LENGTHS, "length")
     | dict.fromkeys(
@@ -269,16 +271,20 @@ Between them the examples hold every key:
 
 
 def solution_page() -> str:
-    """Return the page about solution files."""
-    rows = [f"| `{path}` | {meaning} | {unit} |" for path, unit, meaning in SOLUTION_KEYS]
+    """Return the page about solution files, made from the model that reads them."""
+    rows = [
+        f"| `{path}` | {field.description} |"
+        for path, field in keys_of(SolutionFile).items()
+        if not path.startswith(ELSEWHERE)
+    ]
     return f"""# Solution files
 
 A solution file is what `synth solve -o DIR` writes and `--json` prints: the task, the answer and the guide in one, so
 that it can be loaded and verified again with no other file. All is in metres, seconds and radians; what JSON cannot
-hold, infinity, is null. `[]` stands for each entry of a list.
+hold, infinity, is null. `[]` stands for each entry of a list. `synth schema solution` prints the same as JSON Schema.
 
-| key | meaning | unit |
-|---|---|---|
+| key | meaning |
+|---|---|
 {chr(10).join(rows)}
 """
 

@@ -90,77 +90,29 @@ if TYPE_CHECKING:
     from synth.trajectories import Trajectory, trajectory
 
 _ROOMS = {
-    "errors": ("GeometryError", "InputError", "Mistake", "SolverError", "SynthError", "TimeLimitError"),
-    "export": (
-        "casadi_kinematics",
-        "kinematics_c_code",
-        "solution_to_json",
-        "write_files",
-        "write_planner_files",
-    ),
-    "geometry": ("Box", "Capsule", "Category", "Invariants", "Sphere", "WorkspaceSurface"),
-    "guide": ("Guide", "make_guide"),
-    "measurement": ("Inspection", "Measurement", "inspect", "load_measurements"),
+    "errors": "GeometryError InputError Mistake SolverError SynthError TimeLimitError",
+    "export": "casadi_kinematics kinematics_c_code solution_to_json write_files write_planner_files",
+    "geometry": "Box Capsule Category Invariants Sphere WorkspaceSurface",
+    "guide": "Guide make_guide",
+    "measurement": "Inspection Measurement inspect load_measurements",
     "robot": (
-        "PRESETS",
-        "Arm",
-        "BaseChoices",
-        "BasePose",
-        "BaseRange",
-        "Interval",
-        "JointBranches",
-        "JointLimits",
-        "LinkShape",
-        "MalleableLink",
-        "RigidLink",
-        "Robot",
-        "SurfaceMesh",
-        "Workspace",
-        "keeps_clear",
-        "link_to_pose",
-        "links_to_poses",
-        "why_no_link",
+        "PRESETS Arm BaseChoices BasePose BaseRange Interval JointBranches JointLimits LinkShape "
+        "MalleableLink RigidLink Robot SurfaceMesh Workspace keeps_clear link_to_pose links_to_poses "
+        "why_no_link"
     ),
-    "solution_file": ("load_solution", "solution_from_json", "solution_schema"),
-    "sweep": ("TaskOutcome", "SweepProgress", "solve_many"),
+    "solution_file": "load_solution solution_from_json solution_schema",
+    "sweep": "TaskOutcome SweepProgress solve_many",
     "synthesis": (
-        "Bound",
-        "Design",
-        "Figures",
-        "Forgiveness",
-        "Margins",
-        "Motion",
-        "NotFoundError",
-        "Progress",
-        "Release",
-        "Solution",
-        "Status",
-        "TargetResult",
-        "Timing",
-        "Verification",
-        "Violation",
-        "explain",
-        "motions",
-        "solve",
-        "verify",
+        "Bound Design Figures Forgiveness Margins Motion NotFoundError Progress Release Solution Status "
+        "TargetResult Timing Verification Violation explain motions solve verify"
     ),
     "task": (
-        "Approach",
-        "Objective",
-        "Obstacle",
-        "PointTarget",
-        "TargetTable",
-        "Task",
-        "Topology",
-        "load_robot",
-        "load_task",
-        "parse_task",
-        "robot_schema",
-        "task_schema",
+        "Approach Objective Obstacle PointTarget TargetTable Task Topology load_robot load_task "
+        "parse_task robot_schema task_schema"
     ),
-    "trajectories": ("Trajectory", "trajectory"),
+    "trajectories": "Trajectory trajectory",
 }
-_ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
+_ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names.split()}
 
 __all__ = [
     "PRESETS",

@@ -1,16 +1,14 @@
-"""The commands that serve other programs; what they do is in the modules of their names."""
+"""The commands that serve other programs: `synth schema` and `synth export`."""
 
 from __future__ import annotations
 
 import math
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
-if TYPE_CHECKING:
-    from synth.cli.exit_codes import ExitCode
+from synth.cli.exit_codes import ExitCode
 
 
 @click.command()
@@ -24,9 +22,21 @@ def schema(kind: str) -> None:
     from synth.cli.session import Session, run
 
     def command(_session: Session) -> ExitCode:
-        from synth.cli.schema import print_schema
+        import json
 
-        return print_schema(kind)
+        from synth.cli.say import say
+        from synth.measurement import measured_schema
+        from synth.solution_file import solution_schema
+        from synth.task import robot_schema, task_schema
+
+        schemas = {
+            "task": task_schema,
+            "robot": robot_schema,
+            "solution": solution_schema,
+            "measured": measured_schema,
+        }
+        say(json.dumps(schemas[kind](), indent=2))
+        return ExitCode.DONE
 
     sys.exit(run(command, math.inf))
 
@@ -62,9 +72,17 @@ def export(solution: Path, output: Path, *, shape: int, **kinds: bool) -> None:
     from synth.cli.session import Session, run
 
     def command(_session: Session) -> ExitCode:
-        from synth.cli.export import export_file
+        from synth.cli.say import say
+        from synth.export import write_planner_files
+        from synth.solution_file import load_solved
+        from synth.synthesis import showing
 
-        return export_file(solution, output, [kind for kind, asked in kinds.items() if asked], shape)
+        solved = load_solved(solution)
+        if shape != 1:
+            solved = showing(solved, shape)
+        for path in write_planner_files(solved, output, [kind for kind, asked in kinds.items() if asked]):
+            say(f"wrote {path}", on_stderr=True)
+        return ExitCode.DONE
 
     sys.exit(run(command, math.inf))
 

@@ -12,6 +12,7 @@ from pydantic import Field, model_validator
 
 from synth.geometry import Category  # noqa: TC001 - pydantic reads the annotation
 from synth.solution_file.task_schema import (
+    ApproachPart,
     ArcPart,
     BasePart,
     Joints,
@@ -70,6 +71,8 @@ class TargetPart(TargetResultPart):
     position: Point | None = Field(default=None, description="where it is, m")
     reached: Point | None = Field(default=None, description="where the end effector gets to, m")
     tolerance: Number | None = Field(default=None, description="largest miss that counts as reached, m")
+    approach: ApproachPart | None = Field(default=None, description="direction of arrival asked for, or null")
+    astray: Number | None = Field(default=None, description="angle of the rigid link beside that, rad")
     clearance: Number | None = Field(default=None, description="from obstacles, m; null: there are none")
     alternatives: list[Joints] = Field(default=[], description="other joint angles that reach it, rad")
 

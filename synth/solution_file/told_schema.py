@@ -126,6 +126,14 @@ class TolerancePart(Part):
     direction_target: str = Field(description="the target that is lost first")
 
 
+class PlacePart(Part):
+    """The place that was chosen for the base, and how precisely."""
+
+    name: str = Field(description="what it is called, if it has a name")
+    position: Length = Field(description="how far the base may be off if nothing else is, m")
+    turn: Length = Field(description="how far it may be turned, rad")
+
+
 class GuidePart(Part):
     """Where everything is while the link is bent."""
 
@@ -135,3 +143,4 @@ class GuidePart(Part):
     centreline: list[StationPart] = Field(description="points along the link")
     tolerance: TolerancePart | None = Field(default=None, description="how precisely; null: not met")
     forgiveness: ForgivenessPart | None = Field(default=None, description="what a hand leaves")
+    base: PlacePart | None = Field(default=None, description="the place chosen for the base; null: given")

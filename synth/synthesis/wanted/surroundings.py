@@ -40,7 +40,7 @@ class Surroundings:
         self.body = ArmBody(arm)
         self.limits = task.robot.joint_limits
         self.solids: list[Solid] = list(seen_by(task, arm))
-        self.floor = -np.inf if task.floor is None else task.floor
+        self.floor = task.lowest_from(arm.base)
 
     def clear(self, start: FloatArray, end: FloatArray) -> NDArray[np.bool_]:
         """Return whether straight ways, shape (n, 2), are certainly clear."""
