@@ -138,8 +138,8 @@ def task_picture(solution: Solution, *, width: float = 7.5, named: bool = True) 
         axes.add_collection3d(
             Poly3DCollection(faces_of(obstacle.solid), facecolor=WALL, edgecolor=WALL, alpha=0.13, zorder=2)
         )
-    if task.floor is not None:
-        height = 1e3 * (task.floor + task.base.position[2])
+    if task.floor_height is not None:
+        height = 1e3 * task.floor_height
         draw_floor(axes, points, height)
         points = np.vstack([points, [*points[0, :2], height]])
         if named:

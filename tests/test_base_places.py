@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from planted import ROBOT, noisy, planted_task
+from planted import ROBOT, noisy, planted_arm, planted_task
 from planted_bases import LEANING, planted_base, planted_choice
 from scipy.spatial.transform import Rotation
 
@@ -14,7 +14,7 @@ import synth
 from synth.export import solution_to_json
 from synth.geometry import Box, roll_pitch_yaw, rotation_of
 from synth.guide import make_guide
-from synth.robot import BaseChoices, BasePose, BaseRange, Interval
+from synth.robot import BaseChoices, BasePose, BaseRange, Interval, Workspace
 from synth.synthesis import Status
 from synth.synthesis.shapes import Shapes
 from synth.synthesis.starts import refine, start_points
@@ -204,3 +204,16 @@ def test_the_step_leads_to_the_targets_from_nearby():
     refined = refine(task, replace(shapes, unknowns=unknowns), iterations=8, near=True)
     assert refined.cost[0] < 1e-12
     assert base.position == pytest.approx(task.places.pose(refined.shapes.bases.rows[0]).position, abs=0.1)
+
+
+def test_the_box_of_a_leaning_workspace_holds_it():
+    arm = replace(planted_arm(np.random.default_rng(3)), base=BasePose([0.1, 0.7, 0.5], roll=1.2, pitch=0.3))
+    workspace = Workspace.within_limits(arm)
+    low, high = workspace.bounding_box
+    points = workspace.sample(2000)
+    assert (points >= low).all()
+    assert (points <= high).all()
+    rho, height = workspace.section(5)[2]
+    middle = ROBOT.joint_limits.second.middle
+    x, y, z = arm.base.to_base(arm.forward_kinematics(0.0, middle))
+    assert (rho, height) == pytest.approx((np.hypot(x, y), z))

@@ -29,7 +29,7 @@ targets:
 
 # What else may be asked; take the "# " away from what you need.
 # name: two crates              # what the result is called; the name of this file if it is not written
-# base: {position: [0, 0, 0], yaw_deg: 0}       # where the robot stands; each number may be a range, as [-200, 200]
+# base: {position: [0, 0, 0], yaw_deg: 0}       # where the robot stands; a number may be a range, [-200, 200]
 # floor: 0                      # link, joint 2 and end effector stay above this height; null: no floor
 # topology: any                 # general | puma | scara | spherical
 # objective: least_squares      # minimax: the worst miss, where not all targets can be met

@@ -34,8 +34,9 @@ from synth.robot.link import (
     stepped,
     why_no_link,
 )
+from synth.robot.surface_mesh import SurfaceMesh
 from synth.robot.validity import keeps_clear
-from synth.robot.workspace import SurfaceMesh, Workspace
+from synth.robot.workspace import Workspace
 
 __all__ = [
     "ANYWHERE",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,9 @@ import numpy as np
 
 from synth.arrays import FloatArray, frozen, frozen_value
 from synth.geometry import critical_angles, sampling_angles
+from synth.robot.base_pose import BasePose
 from synth.robot.hardware import Interval, JointLimits, into_turn
+from synth.robot.surface_mesh import SurfaceMesh
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -23,35 +26,6 @@ _TURN = 2.0 * math.pi
 _GRADES = np.concatenate([[0.0], 0.5 * 0.25 ** np.arange(27.0)[::-1]])
 _GAUSS = np.polynomial.legendre.leggauss(16)
 _COARSEST = 1.0  # rad; seven cells a turn still close up
-
-
-@frozen_value
-class SurfaceMesh:
-    """Triangles on a workspace surface.
-
-    Attributes:
-        vertices: Points in the task frame, shape (n, 3), m.
-        faces: Indices of the vertices of each triangle, shape (m, 3); of a tube about skew axes
-            anticlockwise as seen from outside.
-        reachable: Whether each triangle is within the joint limits and above the floor, shape (m,).
-    """
-
-    vertices: FloatArray
-    faces: NDArray[np.int64]
-    reachable: NDArray[np.bool_]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "vertices", frozen(self.vertices))
-        for name in ("faces", "reachable"):
-            array = getattr(self, name).copy()
-            array.setflags(write=False)
-            object.__setattr__(self, name, array)
-
-    @property
-    def face_areas(self) -> FloatArray:
-        """Area of each triangle, shape (m,), m^2."""
-        a, b, c = np.moveaxis(self.vertices[self.faces], 1, 0)
-        return np.asarray(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=-1))
 
 
 @frozen_value
@@ -122,7 +96,11 @@ class Workspace:
 
         Exact: a coordinate is extreme inside the limits of joint 1 only where P5 lies straight along it,
         with rho extreme or joint 2 at a limit; at a limit of joint 1, and for z, it is a sinusoid of theta2.
+        Of a base that leans it is the box about that of the upright arm, and may be too large.
         """
+        if not self.arm.base.is_upright:
+            upright = Workspace(replace(self.arm, base=BasePose()), self.limits)
+            return _turned_box(upright.bounding_box, self.arm.base)
         base = self.limits.base
         kinematics, yaw = self.arm.kinematics, self.arm.base.yaw
         x, y, _ = np.moveaxis(kinematics.forward(0.0, sampling_angles(2)), -1, 0)
@@ -149,11 +127,13 @@ class Workspace:
             count: Number of points, from the lower to the upper limit of joint 2.
 
         Returns:
-            Distance rho from axis 1 and height z in the task frame, shape (count, 2), m.
+            Distance rho from axis 1 and height z in the task frame, shape (count, 2), m; where the base leans
+            the height is that along axis 1, from P1.
         """
         theta2 = np.linspace(self.limits.second.lower, self.limits.second.upper, count)
         x, y, z = np.moveaxis(self.arm.kinematics.forward(0.0, theta2), -1, 0)
-        return np.column_stack([np.hypot(x, y), z + self.arm.base.position[2]])
+        lift = self.arm.base.position[2] if self.arm.base.is_upright else 0.0
+        return np.column_stack([np.hypot(x, y), z + lift])
 
     def mesh(self, spacing: float = math.radians(5.0), floor: float | None = None) -> SurfaceMesh:
         """Return a mesh of the whole surface, with the part within the limits marked.
@@ -240,3 +220,9 @@ def _cells(interval: Interval, spacing: float) -> tuple[FloatArray, NDArray[np.b
         ]
     )
     return begin, np.arange(inside + outside) < inside
+
+
+def _turned_box(box: FloatArray, base: BasePose) -> FloatArray:
+    """Return the box in the task frame about a box in the base frame, both of shape (2, 3), m."""
+    corners = base.to_task(np.stack(np.meshgrid(*box.T, indexing="ij"), axis=-1).reshape(-1, 3))
+    return frozen([corners.min(axis=0), corners.max(axis=0)])

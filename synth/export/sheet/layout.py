@@ -10,7 +10,7 @@ import numpy as np
 from synth.export.sheet.labels import FONT_SIZE
 from synth.export.sheet.page import HEIGHT, MARGIN, WIDTH
 from synth.export.sheet.typesetting import shortened
-from synth.export.sheet.views import FRONT, SIDE, TOP, draw_section, draw_view, section
+from synth.export.sheet.views import FRONT, SIDE, TOP, about_axis_1, draw_section, draw_view, section
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
@@ -84,18 +84,20 @@ def _section(page: Page, solution: Solution, scene: Scene, square: tuple[float, 
     x, y, side = square
     limits = solution.robot.robot.joint_limits.base
     curve = section(solution.best, np.linspace(0.0, 2.0 * math.pi, 181))
-    rho = 1e3 * np.hypot(*solution.robot.base.to_base(scene.targets / 1e3)[:, :2].T)
-    points = np.vstack([curve, [[0.0, scene.base[0, 2]]], np.column_stack([rho, scene.targets[:, 2]])])
+    base = solution.robot.base
+    shown = np.vstack([base.position, scene.targets / 1e3])
+    points = np.vstack([curve, about_axis_1(base, shown)])
     lowest, highest = points.min(axis=0), points.max(axis=0)
     span = 1.16 * float((highest - lowest).max())
     corner = 0.5 * (lowest + highest - span)
-    if scene.floor is not None:
+    if scene.floor is not None and base.is_upright:
         corner[1] = lowest[1] - 0.08 * span
     axes = page.axes(x, y, side, side, np.stack([corner, corner + span]))
-    page.text(x, y - 1.5, "Section: ρ, z, mm", 7.0, weight="bold")
-    base = np.degrees([limits.lower, limits.upper])
+    height = "z" if base.is_upright else "along axis 1"
+    page.text(x, y - 1.5, f"Section: ρ, {height}, mm", 7.0, weight="bold")
+    turns = np.degrees([limits.lower, limits.upper])
     if side >= _ROOM_FOR_A_NOTE:
-        page.text(x + side, y - 1.5, f"joint 1 {base[0]:z.0f}° to {base[1]:z.0f}°", 6.0, ha="right")
+        page.text(x + side, y - 1.5, f"joint 1 {turns[0]:z.0f}° to {turns[1]:z.0f}°", 6.0, ha="right")
     draw_section(axes, scene, solution.best, span / side)
 
 

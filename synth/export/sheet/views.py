@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.export.sheet.scene import Scene
+    from synth.robot import BasePose
     from synth.synthesis import Design
 
 # Colours of Okabe and Ito, told apart with any colour vision; line styles tell them apart in grey.
@@ -74,7 +75,7 @@ def draw_section(axes: Axes, scene: Scene, design: Design, scale: float) -> None
     limits = arm.robot.joint_limits.second
     whole = section(design, np.linspace(0.0, 2.0 * math.pi, 721))
     within = section(design, np.linspace(limits.lower, limits.upper, 721))
-    if scene.floor is not None:
+    if scene.floor is not None and arm.base.is_upright:
         _draw_floor(axes, scene.floor)
     axes.plot(*whole.T, color=LINK, linewidth=0.8, linestyle="--", zorder=3)
     axes.plot(*within.T, color=LINK, linewidth=1.8, zorder=4)
@@ -84,16 +85,23 @@ def draw_section(axes: Axes, scene: Scene, design: Design, scale: float) -> None
         for angle, end in ((limits.lower, within[0]), (limits.upper, within[-1])):
             axes.plot(*end, "|", color=LINK, markersize=7.0, markeredgewidth=1.4, zorder=5)
             labels.add(f"{math.degrees(angle):.0f}°", end)
-    rho = 1e3 * np.hypot(*arm.base.to_base(scene.targets / 1e3)[:, :2].T)
-    _draw_targets(axes, np.column_stack([rho, scene.targets[:, 2]]), scene, labels)
+    _draw_targets(axes, about_axis_1(arm.base, scene.targets / 1e3), scene, labels)
     labels.place()
 
 
 def section(design: Design, theta2: FloatArray) -> FloatArray:
-    """Return P5 as distance from axis 1 and height in the task frame, shape (k, 2), mm."""
-    arm = design.arm
-    points = arm.base.to_base(arm.forward_kinematics(0.0, theta2))
-    return 1e3 * np.column_stack([np.hypot(points[:, 0], points[:, 1]), points[:, 2] + arm.base.position[2]])
+    """Return P5 as `about_axis_1` does, shape (k, 2), mm."""
+    return about_axis_1(design.arm.base, design.arm.forward_kinematics(0.0, theta2))
+
+
+def about_axis_1(base: BasePose, points: FloatArray) -> FloatArray:
+    """Return points of the task frame, (k, 3), m, as distance from axis 1 and height, shape (k, 2), mm.
+
+    The height is z of the task frame; where the base leans it is that along axis 1, from P1.
+    """
+    seen = base.to_base(points)
+    lift = base.position[2] if base.is_upright else 0.0
+    return 1e3 * np.column_stack([np.hypot(seen[:, 0], seen[:, 1]), seen[:, 2] + lift])
 
 
 def _draw_floor(axes: Axes, height: float) -> None:
