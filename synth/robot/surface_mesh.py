@@ -25,7 +25,7 @@ class SurfaceMesh:
 
     vertices: FloatArray
     faces: NDArray[np.int64]
-    reachable: NDArray[np.bool_]
+    reachable: NDArray[np.bool]
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "vertices", frozen(self.vertices))

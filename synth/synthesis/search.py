@@ -106,7 +106,10 @@ class Search:
         if self._led_astray(start) and self.polishing.keep(start.arm, start.joints).verification.possible:
             self.polishing.polish(start, near=True)
         if self._lost(start):
-            self.polishing.by_squares.polish(start, near=True)
+            if self._task.objective is Objective.MINIMAX:  # the sum of squares is the smoother one
+                self.polishing.by_squares.polish(start, near=True)
+            if not self.polishing.found:  # a start that is an answer is better than what polishing made of it
+                self.polishing.keep(start.arm, start.joints)
         self.starts += 1
         self._since_found += self.polishing.found
 
@@ -154,11 +157,8 @@ class Search:
         return sum_of_squares and not self.polishing.found and self._may_be_better(start)
 
     def _lost(self, start: Start) -> bool:
-        """Whether a start passes through all targets, whatever limits it breaks, and its polishing lost them.
-
-        Where every target can be met the objectives agree, and the sum of squares is the smoother one.
-        """
-        if self.polishing.found or self._task.objective is Objective.LEAST_SQUARES:
+        """Whether a start passes through all targets, whatever limits it breaks, and its polishing lost them."""
+        if self.polishing.found:
             return False
         return bool((start.misses(self._task) <= self._task.tolerances).all())
 
