@@ -9,6 +9,7 @@ from planted import ROBOT, feasible, nearly_special_task, planted_task
 from solved import independent_misses, noisy, points
 
 from synth.synthesis import Status, solve, verify
+from synth.synthesis.polishing import Polishing
 from synth.synthesis.solution.message import message
 from synth.synthesis.wanted.design import Design
 from synth.synthesis.wanted.judging import judged
@@ -110,3 +111,9 @@ def test_a_way_that_is_missing_is_said_first():
     assert message(task, Status.FOUND, [closed], ()) == (
         "every target is reached, but no way was found from target 1 to target 2"
     )
+
+
+def test_a_start_that_is_an_answer_is_kept_where_its_polishing_loses_it(monkeypatch):
+    monkeypatch.setattr(Polishing, "polish", lambda *_, **__: None)
+    solution = solve(planted_task(3, 4)[0], alternatives=0)
+    assert solution.found
