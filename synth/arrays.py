@@ -58,7 +58,11 @@ def _equal(one: Any, other: Any) -> bool:
         return len(one) == len(other) and all(map(_equal, one, other))
     if isinstance(one, Mapping) and isinstance(other, Mapping):
         return one.keys() == other.keys() and all(_equal(value, other[key]) for key, value in one.items())
-    return bool(one == other)
+    return bool(one == other) or (_is_nan(one) and _is_nan(other))
+
+
+def _is_nan(value: Any) -> bool:
+    return isinstance(value, float) and isnan(value)
 
 
 def _key(value: Any) -> Any:
@@ -70,4 +74,4 @@ def _key(value: Any) -> Any:
         return tuple(map(_key, value[:_HASHED]))
     if isinstance(value, Mapping):
         return frozenset(value)
-    return value
+    return None if _is_nan(value) else value

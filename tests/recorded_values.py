@@ -7,10 +7,13 @@ import importlib
 import math
 import pkgutil
 from contextlib import contextmanager
+from dataclasses import replace
 
 import numpy as np
 from exact_targets import random_values, targets_of
 from planted import ROBOT, planted_task
+from planted_approaches import planted_approach
+from planted_bases import planted_base
 from planted_obstacles import planted_with_obstacles
 from sampled_shapes import noisy_task
 from standing import BARS, HOLD, SIGMA, seen
@@ -28,7 +31,7 @@ from synth.measurement import StandingArm, examine, inspect
 from synth.measurement.distances.measured import Precision
 from synth.measurement.distances.reading import parse_measurements
 from synth.measurement.markers.calibration import calibrate
-from synth.robot import Arm, LinkShape, Workspace, link_to_pose, why_no_link
+from synth.robot import Arm, BaseChoices, LinkShape, Workspace, link_to_pose, why_no_link
 from synth.robot.arm_in_shape import ArmInShape
 from synth.sweep import solve_many
 from synth.synthesis import Release, solve, verify
@@ -37,8 +40,8 @@ from synth.synthesis.relaxed_limits import limits_of
 from synth.synthesis.solution import Outcome
 from synth.watch import Watch
 
-# These hold symbolic expressions, and a figure: of neither can anybody say whether it is equal to another.
-WITHOUT_A_VALUE = {"Derivation", "_Piece", "Page"}
+# These hold symbolic expressions, and figures: of neither can anybody say whether it is equal to another.
+WITHOUT_A_VALUE = {"Derivation", "_Piece", "Page", "_Paper", "RobotDrawing"}
 
 
 def frozen_dataclasses():
@@ -84,6 +87,7 @@ def recorded_values(folder):
         _measured()
         _exact()
         _small()
+        _free_bases()
     return made
 
 
@@ -140,6 +144,13 @@ def _exact():
     planes_through(targets_of(values, 5, rng)[0])
     values[:, [0, 1]] = 0.0, 0.7
     spheres_through(targets_of(values, 5, rng)[0])
+
+
+def _free_bases():
+    task, base = planted_base(0, count=3)
+    make_guide((solution := solve(task)).task, solution.best)
+    solve(replace(task, places=BaseChoices(["here"], [base])), alternatives=0)
+    planted_approach(0)
 
 
 def _small():

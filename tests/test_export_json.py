@@ -150,8 +150,8 @@ def test_the_fields_of_the_contract_are_there():
     assert set(content["category_distances"]) == {"puma", "scara", "spherical"}
     assert content["bound"] is None
     assert set(content["targets"][0]) == {
-        "name", "position", "reached", "miss", "tolerance", "within_tolerance", "clearance",
-            "joints", "alternatives",
+        "name", "position", "reached", "miss", "tolerance", "within_tolerance", "approach",
+        "astray", "clearance", "joints", "alternatives",
     }  # fmt: skip
     assert set(content["guide"]["tolerance"]) >= {"position", "direction"}
     (other,) = content["alternatives"]

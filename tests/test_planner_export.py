@@ -23,8 +23,8 @@ from robot_files import (
 
 import synth
 from synth.errors import InputError, SynthError
-from synth.export.planners.rotations import quaternion, roll_pitch_yaw
-from synth.geometry import Box, Capsule, Sphere
+from synth.export.planners.rotations import quaternion
+from synth.geometry import Box, Capsule, Sphere, roll_pitch_yaw
 from synth.synthesis import Design, NotFoundError, Status, verify
 from synth.task import Obstacle, TargetTable, Task
 
@@ -107,7 +107,7 @@ def test_obstacles_stand_in_the_mjcf(tmp_path):
     solution_with(ARMS["elsewhere"], -0.2, obstacles).export(tmp_path, "mjcf")
     geoms = {each.get("name"): each.attrib for each in mjcf(tmp_path).findall("worldbody/geom")}
     assert geoms["floor"]["type"] == "plane"
-    np.testing.assert_allclose(numbers(geoms["floor"]["pos"]), [0.4, -0.3, 0.0])
+    np.testing.assert_allclose(numbers(geoms["floor"]["pos"]), [0.4, -0.3, -0.2])
     np.testing.assert_allclose(numbers(geoms["obstacle_1_shelf"]["size"]), [0.05, 0.2, 0.1])
     assert [geoms[name]["type"] for name in list(geoms)[:4]] == ["box", "sphere", "capsule", "sphere"]
     assert [path.name for path in tmp_path.iterdir()] == ["robot.xml"]

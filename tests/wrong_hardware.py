@@ -106,6 +106,4 @@ WRONG_HARDWARE = {
         "not supported points",
     ),
     "path": (TASK + "path: {csv: a.csv}\n", "path", 13, "not supported targets"),
-    "free base": (task("[0, 100, 0]", "[0, [0, 100], 0]"), "base.position[1]", 5, "free base not supported"),
-    "free yaw": (task("yaw_deg: 90", "yaw_deg: [0, 90]"), "base.yaw_deg", 5, "free base not supported"),
 }

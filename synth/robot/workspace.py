@@ -99,12 +99,11 @@ class Workspace:
         Of a base that leans it is the box about that of the upright arm, and may be too large.
         """
         if not self.arm.base.is_upright:
-            upright = Workspace(replace(self.arm, base=BasePose()), self.limits)
-            return _turned_box(upright.bounding_box, self.arm.base)
+            return _turned_box(Workspace(replace(self.arm, base=BasePose()), self.limits), self.arm.base)
         base = self.limits.base
         kinematics, yaw = self.arm.kinematics, self.arm.base.yaw
         x, y, _ = np.moveaxis(kinematics.forward(0.0, sampling_angles(2)), -1, 0)
-        turns = self._within_second(critical_angles(x**2 + y**2))
+        turns = _stretched(self.limits.second, critical_angles(x**2 + y**2))
         start = kinematics.forward(0.0, turns)
         along = sampling_angles(1)[:, None] - yaw - np.arctan2(start[:, 1], start[:, 0])
         inside = self.arm.forward_kinematics(_within(base, along), turns)
@@ -114,7 +113,8 @@ class Workspace:
             self.arm.forward_kinematics(at_limits, [0.0, 0.5 * np.pi, np.pi]), 1, 0
         )
         crests = np.arctan2(at_90 - 0.5 * (at_0 + at_180), 0.5 * (at_0 - at_180))
-        turns = np.stack([self._within_second(np.concatenate([row, row + np.pi])) for row in crests])
+        both = np.concatenate([crests, crests + np.pi], axis=1)
+        turns = np.stack([_stretched(self.limits.second, row) for row in both])
         edges = self.arm.forward_kinematics(at_limits, turns)
         # Any point of the workspace may be in the list; what counts is that no extreme one is missing.
         points = np.concatenate([inside.reshape(-1, 3), edges.reshape(-1, 3)])
@@ -132,8 +132,7 @@ class Workspace:
         """
         theta2 = np.linspace(self.limits.second.lower, self.limits.second.upper, count)
         x, y, z = np.moveaxis(self.arm.kinematics.forward(0.0, theta2), -1, 0)
-        lift = self.arm.base.position[2] if self.arm.base.is_upright else 0.0
-        return np.column_stack([np.hypot(x, y), z + lift])
+        return np.column_stack([np.hypot(x, y), z + self.arm.base.is_upright * self.arm.base.position[2]])
 
     def mesh(self, spacing: float = math.radians(5.0), floor: float | None = None) -> SurfaceMesh:
         """Return a mesh of the whole surface, with the part within the limits marked.
@@ -179,12 +178,7 @@ class Workspace:
     @cached_property
     def _stretches(self) -> FloatArray:
         """Limits of joint 2, and between them the extremes and kinks of the area element."""
-        return self._within_second(critical_angles(self.area_element(sampling_angles(4)) ** 2))
-
-    def _within_second(self, theta2: FloatArray) -> FloatArray:
-        """Return angles of joint 2 brought within its limits, and the limits, shape (n + 2,)."""
-        second = self.limits.second
-        return np.concatenate([[second.lower, second.upper], _within(second, theta2)])
+        return _stretched(self.limits.second, critical_angles(self.area_element(sampling_angles(4)) ** 2))
 
 
 def _width(interval: Interval) -> float:
@@ -222,7 +216,13 @@ def _cells(interval: Interval, spacing: float) -> tuple[FloatArray, NDArray[np.b
     return begin, np.arange(inside + outside) < inside
 
 
-def _turned_box(box: FloatArray, base: BasePose) -> FloatArray:
-    """Return the box in the task frame about a box in the base frame, both of shape (2, 3), m."""
+def _turned_box(upright: Workspace, base: BasePose) -> FloatArray:
+    """Return the box in the task frame about that of a workspace in its base frame, shape (2, 3), m."""
+    box = upright.bounding_box
     corners = base.to_task(np.stack(np.meshgrid(*box.T, indexing="ij"), axis=-1).reshape(-1, 3))
     return frozen([corners.min(axis=0), corners.max(axis=0)])
+
+
+def _stretched(second: Interval, theta2: FloatArray) -> FloatArray:
+    """Return angles of joint 2 brought within its limits, and the limits, shape (n + 2,)."""
+    return np.concatenate([[second.lower, second.upper], _within(second, theta2)])

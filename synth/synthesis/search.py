@@ -157,7 +157,7 @@ class Search:
         return sum_of_squares and not self.polishing.found and self._may_be_better(start)
 
     def _lost(self, start: Start) -> bool:
-        """Whether a start passes through all targets, whatever limits it breaks, and its polishing lost them."""
+        """Whether a start passes through all targets, whatever limits it breaks, and polishing lost them."""
         if self.polishing.found:
             return False
         return bool((start.misses(self._task) <= self._task.tolerances).all())
