@@ -25,7 +25,7 @@ LENGTHS = [
     "position", "tolerance", "center", "radius", "size", "from", "to", "length", "P1",
     "P2", "P3", "P4", "P5", "d12", "d13", "d14", "d15", "d23",
     "d24", "d25", "d34", "d35", "d45", "floor", "min_bend_radius", "diameter", "tip_offset",
-    "rounding", "sigma",
+    "rounding", "sigma", "radii", "margin", "point",
 ]  # fmt: skip
 # Parts of a solution that have a page of their own, or are described in the same file already.
 ELSEWHERE = ("task.", "releases[].task.", "releases[].design.", "alternatives[].")
@@ -40,7 +40,8 @@ PLAIN = [  # keys of words, counts and parts, which have no unit
     "synth", "name", "length_unit", "robot", "targets", "weight", "surface", "points", "topology",
     "objective", "obstacles", "sphere", "box", "capsule", "current", "arcs", "markers", "link",
     "rigid_link", "joint_limits_deg", "intended", "distances", "configurations", "choices", "approach",
-    "direction",
+    "direction", "mesh", "cylinder", "torus", "rectangle", "disc", "plane", "pose", "region", "side", "coverage",
+    "axis", "normal", "along",
 ]  # fmt: skip
 
 
@@ -103,6 +104,29 @@ base:
 targets:
   - {name: pick, position: [400, 200, 150], tolerance: 5}
 """
+TASK_SURFACES = """\
+synth: 1
+name: four fifths of several surfaces
+length_unit: mm
+robot: malleable-2dof
+surface:
+  - {name: bowl, sphere: {center: [0, 0, 0], radius: 500}, tolerance: 2, coverage: 0.8, side: both,
+     region: [{sphere: {center: [350, 0, 350], radius: 100}}, {box: {center: [0, 350, 350], size: [90, 90, 90], yaw_deg: 30}},
+              {capsule: {from: [300, 0, 300], to: [400, 0, 400], radius: 50}}]}
+  - {name: panel, points: scan.csv, length_unit: mm, pose: {position: [0, 0, 10], rpy_deg: [0, 0, 15]}, coverage: 0.8}
+  - {name: pipe, cylinder: {from: [400, 0, 100], to: [400, 0, 400], radius: 40}, margin: 5, coverage: 0.8}
+  - {name: rim, torus: {center: [0, 0, 200], axis: [0, 0, 1], radii: [400, 50]}, coverage: 0.8}
+  - {name: shelf, rectangle: {center: [400, 0, 300], normal: [0, 0, 1], along: [1, 0, 0], size: [200, 100]}, coverage: 0.8}
+  - {name: lid, disc: {center: [0, 400, 300], normal: [0, 0, 1], radius: 60}, coverage: 0.8}
+  - {name: wall, plane: {point: [500, 0, 0], normal: [1, 0, 0]}, coverage: 0.8,
+     region: [{box: {center: [500, 0, 300], size: [10, 200, 200]}}]}
+"""
+TASK_MESH = """\
+synth: 1
+length_unit: mm
+robot: malleable-2dof
+surface: [{mesh: bowl.stl, length_unit: mm, tolerance: 3}]
+"""
 ROBOT = """\
 name: my robot
 length_unit: mm
@@ -146,7 +170,7 @@ PAGES = (
     FilePage(
         "task-file", "Task files",
         "A task file says what `synth solve` shall reach, with which robot, and what is in the way. Where there is a `surface`,\n`targets` may be left out; what `robot` holds is on [a page of its own](robot-file.md).",
-        TaskFile, (TASK, TASK_MARKERS, TASK_RANGE, TASK_CHOICES),
+        TaskFile, (TASK, TASK_MARKERS, TASK_RANGE, TASK_CHOICES, TASK_SURFACES, TASK_MESH),
     ),
     FilePage(
         "robot-file", "Robot files",

@@ -12,7 +12,7 @@ from package_files import FILES, FOLDERS, MODULES, PACKAGE, TESTS
 ROOMS = {
     "cli": {"export", "guide", "measurement", "solution_file", "sweep", "synthesis", "task"},
     "sweep": {"export", "solution_file", "synthesis", "task"},
-    "solution_file": {"files", "geometry", "robot", "synthesis", "task"},
+    "solution_file": {"files", "geometry", "robot", "surfaces", "synthesis", "task"},
     "export.inspection": {"export", "export.sheet", "measurement"},
     "export.planners": {"geometry", "robot", "synthesis", "task", "trajectories"},
     "trajectories": {"synthesis"},
@@ -57,15 +57,16 @@ ROOMS = {
         "synthesis.starts",
         "task",
     },
-    "synthesis.starts": {"geometry", "robot", "synthesis.shapes", "task"},
+    "synthesis.starts": {"geometry", "robot", "synthesis.check", "synthesis.shapes", "task"},
     "synthesis.shapes": {"geometry", "robot", "task"},
     "synthesis.nlp": {"geometry", "robot", "task"},
     "synthesis.bound": {"robot", "task"},
-    "synthesis.check": {"geometry", "robot", "task"},
+    "synthesis.check": {"geometry", "robot", "surfaces", "task"},
     "measurement": {"measurement.distances", "measurement.markers", "task"},
     "measurement.distances": {"files", "geometry", "robot", "task"},
     "measurement.markers": {"geometry", "robot"},
-    "task": {"files", "geometry", "robot"},
+    "task": {"files", "geometry", "robot", "surfaces"},
+    "surfaces": {"geometry"},
     "files": set(),
     "robot": {"geometry", "robot.hardware", "robot.link"},
     "robot.link": {"robot.hardware"},
@@ -92,6 +93,7 @@ LIBRARIES = {
     "rich": {"cli/session.py"},
     "ruamel": {"files/yaml_text.py"},
     "sympy": {"geometry/derivation.py"},
+    "trimesh": {"surfaces/mesh_file.py"},
 }
 
 

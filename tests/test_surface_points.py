@@ -109,12 +109,6 @@ def test_a_missing_file_is_named_beside_other_mistakes(tmp_path):
     assert "surface.tolerance" in str(caught.value)
 
 
-@pytest.mark.parametrize("kind", ["sphere", "plane", "torus", "mesh"])
-def test_other_surfaces_are_refused_by_name(kind):
-    with pytest.raises(InputError, match=f"surface[.]{kind}: a surface as a {kind} is not supported"):
-        parse_task(TASK.replace("points: scan.csv", f"{kind}: {{}}"))
-
-
 def test_without_surface_or_targets_the_targets_are_missing():
     with pytest.raises(InputError, match="targets: is missing"):
         parse_task(TASK.replace("surface: {points: scan.csv, tolerance: 5}\n", ""))

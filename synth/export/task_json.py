@@ -42,6 +42,7 @@ def task_to_json(task: Task) -> dict[str, object]:
                 strict=True,
             )
         ],
+        "surfaces": _surfaces(task),
         "obstacles": [_obstacle(obstacle) for obstacle in task.obstacles],
         "current": None if task.current is None else {"arcs": arcs_to_json(task.current)},
     }
@@ -55,6 +56,22 @@ def _approaches(table: TargetTable) -> list[dict[str, object]]:
     return [
         {} if math.isnan(tolerance) else {"approach": {"direction": direction, "tolerance": tolerance}}
         for *direction, tolerance in rows
+    ]
+
+
+def _surfaces(task: Task) -> list[object]:
+    """Return of each surface which targets are its samples; their weights are as their areas."""
+    of = task.surface_of_targets
+    return [
+        {
+            "name": surface.name,
+            "coverage": surface.coverage,
+            "tolerance": surface.tolerance,
+            "first": int(np.argmax(of == number)),
+            "samples": int(np.count_nonzero(of == number)),
+        }
+        for number, surface in enumerate(task.surfaces)
+        if (of == number).any()
     ]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,6 +22,7 @@ from synth.robot import (
     Robot,
 )
 from synth.solution_file.task_schema import BoxPart, SpherePart
+from synth.surfaces import Scan, Surface
 from synth.task import Floor, Obstacle, TargetTable, Task
 
 if TYPE_CHECKING:
@@ -38,6 +40,7 @@ if TYPE_CHECKING:
         PlacesPart,
         ReleasedTaskPart,
         RobotPart,
+        SurfacePart,
         TargetPart,
     )
 
@@ -72,8 +75,10 @@ def to_task(
     current = read.current
     shape = made(document, (*path, "current"), lambda: None if current is None else to_shape(current.arcs))
     table = made(document, path, lambda: targets if read.targets is None else _targets(read.targets))
+    given = table
+    surfaces = made(document, (*path, "surfaces"), lambda: _surfaces(read.surfaces, given))
     base = made(document, (*path, "base"), lambda: to_base(read.base))
-    if robot is None or base is None or table is None or document.is_wrong:
+    if robot is None or base is None or table is None or surfaces is None or document.is_wrong:
         return None
     return made(
         document,
@@ -81,7 +86,8 @@ def to_task(
         lambda: Task(
             name=read.name,
             robot=robot,
-            targets=table,
+            targets=_as_samples(table, surfaces),
+            surfaces=surfaces,
             base=base,
             floor=Floor.AT_BASE if read.floor_at_base else read.floor,
             topology=read.topology,
@@ -91,6 +97,26 @@ def to_task(
             places=None if read.places is None else _places(read.places),
         ),
     )
+
+
+def _surfaces(read: Sequence[SurfacePart], table: TargetTable | None) -> tuple[Surface, ...]:
+    """Return surfaces by their samples; between these they are not known from a file."""
+    if table is None:
+        return ()
+    parts = [(each, slice(each.first, each.first + each.samples)) for each in read]
+    return tuple(
+        Surface(each.name, Scan(table.positions[part], table.weights[part]), each.tolerance, each.coverage)
+        for each, part in parts
+    )
+
+
+def _as_samples(table: TargetTable, surfaces: Sequence[Surface]) -> TargetTable:
+    """Return targets the last of which are the samples of surfaces, in order."""
+    count = sum(len(surface.samples) for surface in surfaces)
+    own = len(table) - count
+    if not count or own < 0:
+        return table
+    return replace(table, samples=np.concatenate([np.full(own, -1), np.arange(count)]))
 
 
 def to_base(read: BasePart) -> BasePose:

@@ -176,6 +176,16 @@ class CurrentPart(Part):
     arcs: Some[ArcPart] = Field(description="its arcs, from P2 on")
 
 
+class SurfacePart(Part):
+    """A surface of which targets are the samples, whose weights are in proportion to their areas."""
+
+    name: str = Field(description="what the surface is called")
+    coverage: Annotated[float, Field(gt=0.0, le=1.0)] = Field(description="share of it to be covered")
+    tolerance: Positive = Field(description="largest miss, m")
+    first: int = Field(ge=0, description="the first target that is a sample of it, counted from 0")
+    samples: int = Field(ge=1, description="how many of them there are")
+
+
 class ReleasedTaskPart(Part):
     """A task; one that was released may leave out its targets, which are then those of the task."""
 
@@ -192,6 +202,7 @@ class ReleasedTaskPart(Part):
         default=Objective.LEAST_SQUARES, description="norm of miss over tolerance that is made small"
     )
     targets: Some[TargetPart] | None = Field(default=None, description="the points to reach")
+    surfaces: list[SurfacePart] = Field(default=[], description="surfaces of which targets are samples")
     obstacles: list[ObstaclePart] = Field(default=[], description="solids to keep clear of")
     current: CurrentPart | None = Field(default=None, description="the present shape of the link, or null")
 

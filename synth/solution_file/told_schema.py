@@ -134,6 +134,30 @@ class PlacePart(Part):
     turn: Length = Field(description="how far it may be turned, rad")
 
 
+class BetweenPart(Part):
+    """What is proven of a surface between its samples."""
+
+    share: float = Field(ge=0.0, le=1.0 + 1e-9, description="share of its area within tolerance for certain")
+    largest: Length | None = Field(description="no point is missed by more, m; null: nothing is certain")
+    cells: int = Field(ge=0, description="how many pieces of it were looked at")
+    width: Length = Field(description="how far at most a point of one is from its middle, m")
+
+
+class CoveringPart(Part):
+    """What is covered of a surface."""
+
+    name: str = Field(description="what it is called")
+    coverage: float = Field(gt=0.0, le=1.0, description="share of its area that is asked for")
+    share: float = Field(ge=0.0, le=1.0 + 1e-9, description="share within tolerance, at the samples")
+    covered: bool = Field(description="whether as much is covered as is asked for")
+    largest: Length = Field(description="largest miss of what is covered best, m")
+    rms: Length = Field(description="root mean square of the misses there, m")
+    percentile_95: Length = Field(description="miss that 95 % there do not exceed, m")
+    uncovered: list[Point] = Field(description="middles of the pieces that are not covered, m")
+    uncovered_points: int = Field(ge=0, description="how many these are in all")
+    between: BetweenPart | None = Field(default=None, description="between the samples; null: not known")
+
+
 class GuidePart(Part):
     """Where everything is while the link is bent."""
 

@@ -2,7 +2,16 @@
 
 from synth.synthesis.blocking import explain
 from synth.synthesis.bound import Bound
-from synth.synthesis.check import TargetResult, Verification, Violation, target_results, verify, worst_targets
+from synth.synthesis.check import (
+    Between,
+    Covering,
+    TargetResult,
+    Verification,
+    Violation,
+    target_results,
+    verify,
+    worst_targets,
+)
 from synth.synthesis.search import ALTERNATIVES
 from synth.synthesis.shapes import TargetsSeen
 from synth.synthesis.solution import (
@@ -17,6 +26,7 @@ from synth.synthesis.solution import (
     reasons_told,
     shape_line,
     showing,
+    surface_lines,
 )
 from synth.synthesis.solve import solve
 from synth.synthesis.wanted import (
@@ -40,7 +50,9 @@ __all__ = [
     "HAND_PLACES",
     "HAND_TURNS",
     "MOST_MOTIONS",
+    "Between",
     "Bound",
+    "Covering",
     "Design",
     "Displacements",
     "Figures",
@@ -69,6 +81,7 @@ __all__ = [
     "shape_line",
     "showing",
     "solve",
+    "surface_lines",
     "target_results",
     "verify",
     "way_is_clear",

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.check import verify
+from synth.synthesis.check import proven_between, verify
 from synth.synthesis.many_targets import least_worst, ranked
-from synth.synthesis.starts import random_part, refined_for_all
+from synth.synthesis.search import followed_between
+from synth.synthesis.starts import most_covered, random_part, refined_for_all
 from synth.synthesis.wanted import Design, best_of
 from synth.task import Objective
 
@@ -24,6 +25,13 @@ if TYPE_CHECKING:
 _VERIFIED_AT_MOST = 20_000
 _FIRST = 2_000  # of them are verified first, to see how long one takes
 _OF_TIME_LEFT = 0.8  # in which others are
+_LED_BETWEEN = 3  # times that shapes are led to where nothing is proven
+_PROVEN_BETWEEN = 2  # shapes whose surfaces are looked at between their samples, until one covers them
+_COVERING = 3  # shapes that are looked at where a part of a surface may be left
+_REWEIGHTED = 6  # times that outliers near the surface are left out
+_USUAL = 3.5  # times the median miss: of normal noise two in a hundred are missed more
+_ROUNDING = 1e-8  # m
+_CHOSEN_ANEW = 8  # times that what is covered best of a surface is chosen
 
 
 @dataclass
@@ -67,6 +75,8 @@ def for_all_targets(task: Task, designs: Sequence[Design], seed: int, watch: Wat
         seed: As for `ranked`.
         watch: When it is up one shape is still verified, if only with some of the targets.
     """
+    if task.is_partial:  # each is verified several times: what is in the way is left rather than outliers
+        designs = designs[:_COVERING]
     with watch.on("solving"):
         arms = ranked(task, [design.arm for design in designs], seed, watch)
     whole = WholeTask(task)
@@ -75,8 +85,10 @@ def for_all_targets(task: Task, designs: Sequence[Design], seed: int, watch: Wat
         if verified and watch.is_up():
             break
         with watch.on("solving"):
-            arm = refined_for_all(task, found, watch)
-            if task.objective is Objective.MINIMAX:
+            arm = (
+                _best_covering(task, found, watch) if task.is_partial else refined_for_all(task, found, watch)
+            )
+            if not task.is_partial and task.objective is Objective.MINIMAX:
                 arm = least_worst(task, arm, watch)
         watch.tell(phase="verifying with all targets")
         with watch.on("verifying"):
@@ -91,6 +103,68 @@ def for_all_targets(task: Task, designs: Sequence[Design], seed: int, watch: Wat
         elif not verified:
             return replace(whole, task=seen, designs=best_of(seen, [design], watch.is_up))
     return replace(whole, designs=best_of(task, verified, watch.is_up))
+
+
+def _best_covering(task: Task, arm: Arm, watch: Watch) -> Arm:
+    """Return an arm after steps on what it covers best, which is chosen anew until it stays the same."""
+    check = verify(task, arm)
+    in_the_way = ~np.array(check.within_tolerance) & (check.misses <= task.tolerances)
+    chosen: Task | None = None
+    for _ in range(_CHOSEN_ANEW):
+        covered = most_covered(task, arm, in_the_way)
+        if watch.is_up() or (chosen is not None and covered.table.names == chosen.table.names):
+            break
+        chosen, arm = covered, refined_for_all(covered, arm, watch)
+    return _without_outliers(most_covered(task, arm, in_the_way), arm, watch)
+
+
+def _without_outliers(task: Task, arm: Arm, watch: Watch) -> Arm:
+    """Return an arm after steps on what it misses no more than others, if all is within tolerance still.
+
+    Outliers that happen to lie near the surface are of what is covered best, and draw it aside a little.
+    """
+    better = arm
+    for _ in range(_REWEIGHTED):
+        misses = better.closest_joints(task.table.positions)[1]
+        if watch.is_up() or np.any(misses > task.tolerances):
+            break
+        arm = better
+        usual = np.flatnonzero(misses <= _USUAL * float(np.median(misses)) + _ROUNDING)
+        better = refined_for_all(replace(task, targets=task.table.take(usual)), arm, watch)
+    return arm
+
+
+def proven_whole(part: Task, whole: WholeTask, seed: int, watch: Watch) -> WholeTask:
+    """Return designs, one first whose surfaces are proven between their samples, if there is one.
+
+    Args:
+        part: The task of few targets that they were found for.
+        whole: The designs, with the task of all targets.
+        seed: Seed of the search for shapes that cover what is between samples, where the first do not.
+        watch: When it is up, nothing finer is looked at.
+    """
+    if not whole.task.surfaces or whole.unseen:
+        return whole
+    proven = led = _proven_first(whole.task, whole.designs, watch)
+    for _ in range(_LED_BETWEEN):
+        if not led or led[0].verification.found or not led[0].verification.between or watch.is_up():
+            break
+        with watch.on("solving"):
+            part, beside = followed_between(part, led, seed, watch)
+        led = _proven_first(whole.task, for_all_targets(whole.task, beside, seed, watch).designs, watch)
+    return replace(whole, designs=led if led and led[0].verification.found else proven)
+
+
+def _proven_first(task: Task, designs: tuple[Design, ...], watch: Watch) -> tuple[Design, ...]:
+    """Return designs, the first few with what is proven, up to the first that covers what it should."""
+    proven: list[Design] = []
+    with watch.on("verifying"):
+        for number, each in enumerate(designs[:_PROVEN_BETWEEN]):
+            check = proven_between(task, each.arm, each.verification, watch)
+            proven.append(replace(each, verification=check))
+            if check.found:
+                return (proven[-1], *designs[number + 1 :], *proven[:-1])
+    return (*proven, *designs[_PROVEN_BETWEEN:])
 
 
 def verified_in_time(task: Task, arm: Arm, watch: Watch) -> tuple[Task, Design]:

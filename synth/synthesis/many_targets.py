@@ -18,19 +18,21 @@ from synth.synthesis.starts import (
     SAMPLE,
     Refined,
     as_it_is_and_turned,
+    covered_part,
     level,
+    most_covered,
     random_part,
     relative_misses,
     thinned,
 )
 from synth.task import Objective
+from synth.watch import Watch
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from synth.robot import Arm
     from synth.task import Task
-    from synth.watch import Watch
 
 # That the nonlinear program knows all at once.
 _MOST_TARGETS = {Objective.LEAST_SQUARES: 100, Objective.MINIMAX: 40}
@@ -38,18 +40,35 @@ _PART = 40  # of more targets, those that it knows at first
 _LEVELLINGS = 3
 
 
-def part_of(task: Task, seed: int) -> Task:
+def part_of(task: Task, seed: int, watch: Watch | None = None) -> Task:
     """Return the task with a random part of its targets, or the task itself if they are few.
+
+    Where a part of a surface may be left uncovered, the targets are of what can be covered best.
 
     Args:
         task: The task.
         seed: The same part for the same seed.
+        watch: When it is up, what can be covered best is known only as far as the search for it came.
     """
+    if task.is_partial:
+        covered = covered_part(task, seed, watch or Watch())
+        task = covered or replace(task, targets=replace(task.table, samples=None), surfaces=())
     if len(task.targets) <= _MOST_TARGETS[task.objective]:
         return task
     # The worst miss of a part says little of the worst of all, and takes the program ten times as long.
     part = thinned(task, _PART, np.random.default_rng([seed, _PART]))
     return replace(part, objective=Objective.LEAST_SQUARES)
+
+
+def without_partial(task: Task) -> Task | None:
+    """Return a task of the targets that each must be reached: of no surface that may be left in part."""
+    if not task.is_partial:
+        return task
+    partial = [number for number, surface in enumerate(task.surfaces) if surface.coverage < 1.0]
+    must = np.flatnonzero(~np.isin(task.surface_of_targets, partial))
+    if not len(must):
+        return None
+    return replace(task, targets=replace(task.table.take(must), samples=None), surfaces=())
 
 
 def ranked(task: Task, arms: Sequence[Arm], seed: int, watch: Watch) -> list[Arm]:
@@ -71,9 +90,10 @@ def ranked(task: Task, arms: Sequence[Arm], seed: int, watch: Watch) -> list[Arm
         if (reaching or missing) and watch.is_up():
             break
         watch.tell(phase="looking at more targets")
-        for candidate in as_it_is_and_turned(some, arm, watch):
-            relative = relative_misses(some, candidate)
-            if np.all(relative <= np.sqrt(some.weights)):
+        seen = most_covered(some, arm) if some.is_partial else some
+        for candidate in as_it_is_and_turned(seen, arm, watch):
+            relative = relative_misses(seen, candidate)
+            if np.all(relative <= np.sqrt(seen.weights)):
                 reaching.append(candidate)
             else:
                 missing.append((float(np.mean(relative**2)), candidate))

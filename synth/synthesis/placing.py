@@ -79,13 +79,13 @@ def _of_choices(task: Task, places: BaseChoices, seed: int, watch: Watch) -> Run
 
 def _in_range(task: Task, places: BaseRange, seed: int, watch: Watch) -> Run:
     """Refine shapes and places together, and stay at the first place where a shape reaches every target."""
-    part = part_of(task, seed)
+    part = part_of(task, seed, watch)
     runs: list[Run] = []
     impossible = _is_out_of_reach(task, places)
     for start in islice(start_points(part, seed, quick=impossible, watch=watch), _TRIED):
         if start.cost > float(part.tolerances.max()) ** 2 and len(runs) == _TRIED_THAT_MISS:
             break
-        runs.append(_started(task, start, seed, watch))
+        runs.append(_started(task, part, start, seed, watch))
         if runs[-1].search.polishing.found or watch.is_up():
             break
     if not runs:
@@ -97,14 +97,17 @@ def _in_range(task: Task, places: BaseRange, seed: int, watch: Watch) -> Run:
     return best
 
 
-def _run_at(task: Task, base: BasePose, seed: int, watch: Watch) -> Run:
+def _run_at(task: Task, base: BasePose, seed: int, watch: Watch, part: Task | None = None) -> Run:
+    """Return a run with the base somewhere; `part` is what start points were searched with, if they were."""
     there = task.standing_at(base)
-    return Run(there, part_of(there, seed), seed, watch, alternatives=0)
+    if part is None or part is task:
+        part = part_of(there, seed, watch)
+    return Run(there, part.standing_at(base), seed, watch, alternatives=0)
 
 
-def _started(task: Task, start: Start, seed: int, watch: Watch) -> Run:
+def _started(task: Task, part: Task, start: Start, seed: int, watch: Watch) -> Run:
     """Return a run where a start point stands, which is polished."""
-    run = _run_at(task, start.arm.base, seed, watch)
+    run = _run_at(task, start.arm.base, seed, watch, part)
     with run.kept(), watch.keeping_back(run.kept_back):
         run.search.polish(start)
     return run
@@ -117,7 +120,7 @@ def _at_round_numbers(task: Task, places: BaseRange, run: Run, seed: int, watch:
         base = _rounded(places, design.arm.base, *grid)
         arm = replace(design.arm, base=base)
         joints, _ = arm.closest_joints(run.part.table.positions)
-        there = _started(task, Start(arm, joints), seed, watch)
+        there = _started(task, run.part, Start(arm, joints), seed, watch)
         if there.search.polishing.found:
             return there
         if watch.is_up():
@@ -151,7 +154,7 @@ def _best(runs: list[Run]) -> Run:
 
 
 def _objectives(run: Run) -> Iterator[float]:
-    return (objective(run.task, design) for design in run.search.polishing.designs)
+    return (objective(run.part, design) for design in run.search.polishing.designs)
 
 
 def _told(run: Run, places: BaseChoices) -> str:

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.errors import in_a_line
-from synth.synthesis.all_targets import WholeTask, for_all_targets, verified_in_time
+from synth.synthesis.all_targets import WholeTask, for_all_targets, proven_whole, verified_in_time
 from synth.synthesis.bound import why_impossible
+from synth.synthesis.many_targets import without_partial
 from synth.synthesis.present_shape import changing_little
 from synth.synthesis.proving import Certifier
 from synth.synthesis.search import ALTERNATIVES, Search
@@ -84,7 +85,8 @@ class Run:
         """Why no shape can do the task where the base stands, as far as that is known at once."""
         # What proves that a part is out of reach proves it of all, and is sooner done.
         limited = self.watch.remaining < math.inf and len(self.task.targets) > _PROVEN_IN_TIME
-        return why_impossible(self.part if limited else self.task)
+        asked = without_partial(self.part if limited else self.task)
+        return () if asked is None else why_impossible(asked)
 
     @property
     def kept_back(self) -> float:
@@ -96,6 +98,9 @@ class Run:
         """Bound how little any shape can miss, unless the search was stopped already."""
         if self.watch.interrupted:
             self.notes.append("nothing was proven: the search was stopped before")
+            return
+        if self.task.is_partial:
+            self.notes.append("nothing was proven: which part of a surface is left is not bounded")
             return
         self.complete = True
         watch = self.watch.within(_PROOF_TIME)
@@ -156,11 +161,11 @@ class Run:
 
     def _whole(self, designs: tuple[Design, ...]) -> WholeTask:
         """Return designs for a part of the targets as designs for all."""
-        if self.part is self.task:
-            return WholeTask(self.task, designs)
-        whole = for_all_targets(self.task, designs, self.seed, self.watch)
-        self.search.polishing.blocked.extend(whole.blocked)
-        return whole
+        whole = WholeTask(self.task, designs)
+        if self.part is not self.task:
+            whole = for_all_targets(self.task, designs, self.seed, self.watch)
+            self.search.polishing.blocked.extend(whole.blocked)
+        return proven_whole(self.part, whole, self.seed, self.watch)
 
     def _verdict(self, whole: WholeTask) -> tuple[Status, tuple[str, ...]]:
         """Return how the search ended, and why it found no more, as far as that is known."""

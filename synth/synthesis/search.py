@@ -6,11 +6,13 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from synth.synthesis.polishing import Polishing
 from synth.synthesis.shapes import in_equal_arcs
 from synth.synthesis.starts import Start, start_points
-from synth.synthesis.wanted import Design, leaves_no_wish, objective, wished
-from synth.task import Objective
+from synth.synthesis.wanted import Design, best_of, leaves_no_wish, objective, wished
+from synth.task import Objective, PointTarget, TargetTable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -25,6 +27,7 @@ ALTERNATIVES = 2  # shapes looked for after one was found, or else starts polish
 _LOOKED_AT = 4  # shapes that a person would want, for each alternative
 _ALTERNATIVES_THAT_MISS = 2  # likewise, at most, where no shape meets all targets
 _GAIN = 1e-3  # of the objective: the least that is worth another start
+_BETWEEN, _STARTS_BETWEEN = 20, 6  # points between samples that are searched with; starts polished
 _LATE = 0.2  # s after the time is up, from when on not even unpolished starts are looked at
 
 
@@ -182,3 +185,32 @@ def _progress(polishing: Polishing, starts: int, at_most: int) -> dict[str, obje
         "found": polishing.found,
         "phase": "polishing shapes",
     }
+
+
+def followed_between(
+    part: Task, designs: Sequence[Design], seed: int, watch: Watch
+) -> tuple[Task, list[Design]]:
+    """Return the part with points between samples of which nothing is proven, and shapes led there, too.
+
+    Mostly a shape that covers all samples ends short of a surface's edge: there joint 1 has its dead zone.
+
+    Args:
+        part: The task of few targets that the shapes were found for.
+        designs: The shapes, with what is proven of them.
+        seed: Seed of the random shapes.
+        watch: Its time.
+    """
+    unproven = [each.unproven for each in designs[0].verification.between]
+    points = np.concatenate(unproven)
+    some = points[np.random.default_rng([seed, 15]).permutation(len(points))[:_BETWEEN]]
+    first = len(part.targets)
+    more = [
+        PointTarget(f"between the samples {first + number}", point, float(part.tolerances.min()))
+        for number, point in enumerate(some, start=1)
+    ]
+    table = part.table.followed_by(TargetTable.of(more))
+    task = replace(part, targets=replace(table, samples=None), surfaces=())
+    search = Search(task, seed, watch, lambda: False, alternatives=0)
+    if not search.follow(designs):
+        search.run(_STARTS_BETWEEN)
+    return task, list(best_of(task, search.polishing.designs, watch.is_up))

@@ -73,7 +73,7 @@ def solve(
             with run.kept():
                 run.prove()
         return run.solution()
-    run = Run(task, part_of(task, seed), seed, watch, alternatives)
+    run = Run(task, part_of(task, seed, watch), seed, watch, alternatives)
     near = warm_start.designs if warm_start is not None and warm_start.task.robot == task.robot else ()
     with run.kept(), watch.keeping_back(run.kept_back):
         if not run.search.follow(near):

@@ -18,7 +18,7 @@ from synth.task.reading import as_path, as_task, load_robot, load_task, named_ro
 from synth.task.robot_schema import FileOfARobot, RobotEntry
 from synth.task.schema import json_schema, robot_schema, task_schema
 from synth.task.sizes import PER_METRE
-from synth.task.targets import DEFAULT_TOLERANCE, Approach, PointTarget, TargetTable
+from synth.task.targets import DEFAULT_TOLERANCE, Approach, PointTarget, TargetTable, points_of, sampled
 from synth.task.wording import validate
 
 __all__ = [
@@ -52,8 +52,10 @@ __all__ = [
     "named_robot",
     "off_the_hardware",
     "parse_task",
+    "points_of",
     "robot_schema",
     "robot_within",
+    "sampled",
     "task_schema",
     "validate",
 ]

@@ -12,6 +12,7 @@ from pydantic import (
     Discriminator,
     Field,
     Tag,
+    model_validator,
 )
 
 from synth.checks import wrong_name
@@ -22,7 +23,6 @@ ONE = "<one>"
 RANGE = "<range>"
 TEXT = "<text>"
 MAPPING = "<mapping>"
-SURFACES_TO_COME = ("sphere", "plane", "torus", "mesh")
 SMALLEST = 1e-9
 LARGEST = 1e6
 
@@ -80,3 +80,50 @@ class Strict(BaseModel):
     """Base of all entries: no unknown key, no silent conversion, no NaN."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+
+class SphereEntry(Strict):
+    """A ball."""
+
+    center: Position = Field(description="[x, y, z] in the task frame")
+    radius: Positive = Field(description="its radius")
+
+
+class BoxEntry(Strict):
+    """A box with vertical edges."""
+
+    center: Position = Field(description="[x, y, z] in the task frame")
+    size: Annotated[list[Positive], Field(min_length=3, max_length=3)] = Field(
+        description="its extent along its own x, y and z axes"
+    )
+    yaw_deg: Angle = Field(default=0.0, description="rotation of these axes about the vertical")
+
+
+class CapsuleEntry(Strict):
+    """All points within a radius of a segment."""
+
+    from_: Position = Field(alias="from", description="one end of the segment")
+    to: Position = Field(description="the other end")
+    radius: Positive = Field(description="its radius")
+
+
+class SolidEntry(Strict):
+    """One of sphere, box and capsule."""
+
+    sphere: SphereEntry = Field(default_factory=absent, description="a ball: center, radius")
+    box: BoxEntry = Field(default_factory=absent, description="a box: center, size, yaw_deg")
+    capsule: CapsuleEntry = Field(default_factory=absent, description="a thick segment: from, to, radius")
+
+    @property
+    def solid(self) -> SphereEntry | BoxEntry | CapsuleEntry:
+        """The one that is given."""
+        return next(solid for solid in (self.sphere, self.box, self.capsule) if solid is not None)
+
+    @model_validator(mode="after")
+    def _one_solid(self) -> SolidEntry:
+        """Ask for exactly one solid."""
+        given = [kind for kind in ("sphere", "box", "capsule") if getattr(self, kind) is not None]
+        if len(given) != 1:
+            wrong = f"has {' and '.join(given)}" if given else "has no solid"
+            raise ValueError(f"{wrong}, but is one of sphere, box and capsule")
+        return self

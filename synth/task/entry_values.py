@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.errors import InputError, Mistake
-from synth.geometry import Box, Capsule, Sphere
+from synth.geometry import Box, Capsule, Sphere, roll_pitch_yaw, rotation_of
 from synth.robot import (
     BaseChoices,
     BasePlaces,
@@ -23,30 +23,35 @@ from synth.robot import (
     link_to_pose,
     turned,
 )
-from synth.task.entry_types import ends
+from synth.surfaces import Scan, Surface, TriangleMesh, plane_within
+from synth.task.entry_types import BoxEntry, CapsuleEntry, SphereEntry, ends
 from synth.task.hardware_distances import off_the_hardware
 from synth.task.model import Obstacle, Task
-from synth.task.schema import BoxEntry, CapsuleEntry, SphereEntry
 from synth.task.sizes import PER_METRE
-from synth.task.targets import DEFAULT_TOLERANCE, Approach, PointTarget, TargetTable
+from synth.task.surface_schema import turned_to
+from synth.task.targets import DEFAULT_TOLERANCE, Approach, PointTarget, sampled
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from synth.arrays import FloatArray
     from synth.geometry import Solid
+    from synth.surfaces import Shape
     from synth.task.base_schema import BaseEntry, ChoiceEntry
+    from synth.task.entry_types import SolidEntry
     from synth.task.robot_schema import RobotEntry
     from synth.task.schema import CurrentEntry, ObstacleEntry, TargetEntry, TaskFile
+    from synth.task.surface_schema import SurfaceEntry
 
 
-def to_task(file: TaskFile, robot: Robot, scan: FloatArray | None, name: str) -> Task:
+def to_task(file: TaskFile, robot: Robot, read: Mapping[int, FloatArray], name: str) -> Task:
     """Return the task of a file; `name` if it states none.
 
     Args:
         file: What the file holds.
         robot: The robot that it names or describes.
-        scan: The points of its surface in the unit of the file, shape (n, 3); None if it has none.
+        read: Of the surfaces that files hold, by their number, the points, shape (n, 3), or the corners of
+            triangles, shape (n, 3, 3), in the unit of the file.
         name: What the task is called if it states no name.
 
     Raises:
@@ -55,10 +60,12 @@ def to_task(file: TaskFile, robot: Robot, scan: FloatArray | None, name: str) ->
     per_metre = PER_METRE[file.length_unit]
     base, places = _to_base(file.base, per_metre)
     current = None if file.current is None else _to_shape(file.current, per_metre, robot, base)
+    surfaces = _surfaces(file, read, per_metre)
     return Task(
         name=file.name or name,
         robot=robot,
-        targets=_targets(file, scan, per_metre),
+        targets=sampled(surfaces, _targets(file, per_metre)),
+        surfaces=surfaces,
         base=base,
         floor=file.floor / per_metre if isinstance(file.floor, float) else file.floor,
         topology=file.topology,
@@ -91,19 +98,59 @@ def _to_range(entry: BaseEntry | ChoiceEntry, per_metre: float) -> BaseRange:
     )
 
 
-def _targets(file: TaskFile, scan: FloatArray | None, per_metre: float) -> Sequence[PointTarget]:
-    """Return the targets, and behind them the points of a surface."""
-    targets = tuple(
+def _targets(file: TaskFile, per_metre: float) -> Sequence[PointTarget]:
+    return tuple(
         _to_target(entry, per_metre, default_name("target", index))
         for index, entry in enumerate(file.targets or ())
     )
-    if scan is None:
-        return targets
-    given, count = file.surface.tolerance, len(scan)
-    tolerance = DEFAULT_TOLERANCE if given is None else given / per_metre
-    names = tuple(f"surface point {number}" for number in range(1, count + 1))
-    points = TargetTable(names, scan / per_metre, np.full(count, tolerance), np.ones(count))
-    return TargetTable.of(targets).followed_by(points)
+
+
+def _surfaces(file: TaskFile, read: Mapping[int, FloatArray], per_metre: float) -> tuple[Surface, ...]:
+    surfaces, mistakes = [], []
+    is_one = not isinstance(file.surface, list)
+    for index, entry in enumerate(file.surface if isinstance(file.surface, list) else [file.surface]):
+        if not entry:
+            continue
+        name, key = (
+            ("surface", "surface") if is_one else (default_name("surface", index), f"surface[{index}]")
+        )
+        try:
+            surfaces.append(_to_surface(entry, per_metre, file.length_unit, read.get(index), name))
+        except InputError as error:
+            mistakes += [Mistake(each.message, key=f"{key}.{each.key}") for each in error.mistakes]
+    if mistakes:
+        raise InputError(mistakes)
+    return tuple(surfaces)
+
+
+def _to_surface(
+    entry: SurfaceEntry, per_metre: float, unit: str, read: FloatArray | None, name: str
+) -> Surface:
+    """Return a surface; of what a file holds the numbers are in a unit of its own, if it states one."""
+    position, frame = np.zeros(3), np.eye(3)
+    region = tuple(_to_solid(each, per_metre) for each in entry.region or ())
+    pose = rotation_of(*np.radians(entry.pose.rpy_deg))
+    moved = np.array(entry.pose.position) / per_metre
+    if read is not None:
+        lengths = read / PER_METRE[unit if entry.length_unit is None else entry.length_unit]
+        shape: Shape = TriangleMesh(lengths) if lengths.ndim == 3 else Scan(lengths)
+    elif entry.kind == "plane":
+        frame = turned_to(np.array(entry.plane.normal))
+        point = pose @ (np.array(entry.plane.point) / per_metre) + moved
+        shape, middle = plane_within(point, pose @ frame, region)
+        position = pose.T @ (middle - moved)
+    else:
+        shape, position, frame = getattr(entry, entry.kind).placed(per_metre)
+    return Surface(
+        name=entry.name or name,
+        shape=shape,
+        tolerance=DEFAULT_TOLERANCE if entry.tolerance is None else entry.tolerance / per_metre,
+        coverage=entry.coverage,
+        position=pose @ position + moved,
+        rpy=np.array(roll_pitch_yaw(pose @ frame)),
+        region=region,
+        margin=0.0 if entry.margin is None else entry.margin / per_metre,
+    )
 
 
 def default_name(kind: str, index: int) -> str:
@@ -124,15 +171,17 @@ def _to_target(entry: TargetEntry, per_metre: float, name: str) -> PointTarget:
 
 
 def _to_obstacle(entry: ObstacleEntry, per_metre: float, name: str) -> Obstacle:
-    solid: Solid
+    return Obstacle(entry.name or name, _to_solid(entry, per_metre))
+
+
+def _to_solid(entry: SolidEntry, per_metre: float) -> Solid:
     match entry.solid:
         case SphereEntry(center=center, radius=radius):
-            solid = Sphere(np.array(center) / per_metre, radius / per_metre)
+            return Sphere(np.array(center) / per_metre, radius / per_metre)
         case BoxEntry(center=center, size=size, yaw_deg=yaw):
-            solid = Box(np.array(center) / per_metre, np.array(size) / per_metre, math.radians(yaw))
+            return Box(np.array(center) / per_metre, np.array(size) / per_metre, math.radians(yaw))
         case CapsuleEntry(from_=start, to=end, radius=radius):
-            solid = Capsule(np.array([start, end]) / per_metre, radius / per_metre)
-    return Obstacle(entry.name or name, solid)
+            return Capsule(np.array([start, end]) / per_metre, radius / per_metre)
 
 
 def _to_shape(entry: CurrentEntry, per_metre: float, robot: Robot, base: BasePose) -> LinkShape:

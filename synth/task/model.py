@@ -16,9 +16,12 @@ from synth.checks import Checks, described, wrong_type
 from synth.geometry import Box, Capsule, Sphere
 from synth.names import given_twice
 from synth.robot import BaseChoices, BasePlaces, BasePose, BaseRange, LinkShape, Robot
+from synth.surfaces import Surface
 from synth.task.targets import PointTarget, TargetTable
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from synth.geometry import Solid
 
 _SLAB = 100.0  # m: the edge of the block that stands for a floor
@@ -78,6 +81,7 @@ class Task:
         floor: Height in the task frame, m, that link, joint and end effector stay above; None where there is
             none. By default that of P1 where the base is upright, and none where it leans.
         places: Where the robot may be made to stand; None where `base` says it.
+        surfaces: What the targets that are samples of surfaces are samples of, see `sampled`.
         topology: Kind of shape asked for.
         objective: Norm of the misses that is made small.
         obstacles: What the robot keeps clear of at every target.
@@ -95,6 +99,7 @@ class Task:
     obstacles: tuple[Obstacle, ...] = ()
     current: LinkShape | None = None
     places: BasePlaces | None = None
+    surfaces: tuple[Surface, ...] = ()
 
     def __post_init__(self) -> None:
         checks = Checks(self)
@@ -123,6 +128,10 @@ class Task:
             checks.is_a("current", LinkShape)
         if self.places is not None:
             checks.is_a("places", (BaseRange, BaseChoices))
+        if _are_all(checks, "surfaces", self.surfaces, Surface):
+            checks.put("surfaces", tuple(self.surfaces))
+            names = [surface.name for surface in self.surfaces]
+            _report_names_given_twice(checks, "surfaces", names, given_twice(names))
         checks.refuse()
         if self.places is not None and not self.places.contains(self.base):
             checks.put("base", self.places.middle)
@@ -154,6 +163,17 @@ class Task:
     def weights(self) -> FloatArray:
         """Weights of all targets, shape (n,)."""
         return self.table.weights
+
+    @cached_property
+    def surface_of_targets(self) -> NDArray[np.intp]:
+        """Of which surface each target is a sample, shape (n,); -1 for a target of its own."""
+        ends = np.cumsum([0, *(len(surface.samples) for surface in self.surfaces)])
+        return np.searchsorted(ends, self.table.cell, side="right") - 1
+
+    @property
+    def is_partial(self) -> bool:
+        """Whether a part of a surface may be left uncovered."""
+        return any(surface.coverage < 1.0 for surface in self.surfaces)
 
     def standing_at(self, base: BasePose) -> Task:
         """Return the same task with the base at one of its places, and no choice of it left."""

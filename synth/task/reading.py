@@ -15,10 +15,9 @@ from synth.errors import InputError, Mistake
 from synth.files import Document, KeyPath, key_text, read_file, read_text
 from synth.names import did_you_mean
 from synth.robot import PRESETS
-from synth.task.entry_types import SURFACES_TO_COME
+from synth.surfaces import read_corners, read_points
 from synth.task.entry_values import default_name, to_robot, to_task
 from synth.task.model import Task
-from synth.task.points_file import read_points
 from synth.task.robot_schema import RobotEntry, RobotFile
 from synth.task.schema import SurfaceTaskFile, TaskFile
 from synth.task.sizes import PER_METRE, unmeant_distances, unmeant_sizes, unmeant_sizes_of_robot
@@ -155,10 +154,11 @@ def _task(document: Document, directory: Path, name: str) -> Task:
     for path, kind, entries in (
         (("targets",), "target", content.get("targets")),
         (("obstacles",), "obstacle", content.get("obstacles")),
+        (("surface",), "surface", content.get("surface")),
         (("base", "choices"), "place", choices),
     ):
         _report_names_given_twice(document, path, kind, entries)
-    scan = _scan(document, content["surface"], directory) if "surface" in content else None
+    read = _surface_files(document, content.get("surface"), directory)
     document.see_the_time()
     file = validate(document, SurfaceTaskFile if "surface" in content else TaskFile)
     document.see_the_time()
@@ -168,7 +168,7 @@ def _task(document: Document, directory: Path, name: str) -> Task:
         robot = robot_within(document, file.robot, file.length_unit)
     assert robot is not None, "a robot is named or described"  # noqa: S101 - for the type checker
     try:
-        task = to_task(file, robot, scan, name)
+        task = to_task(file, robot, read, name)
         refuse_if_any(unmeant_distances(task, file.length_unit))
     except InputError as error:
         raise document.refuse(error) from None
@@ -186,18 +186,19 @@ def robot_within(document: Document, entry: RobotEntry, unit: str) -> Robot:
     return robot
 
 
-def _scan(document: Document, surface: object, directory: Path) -> FloatArray | None:
-    """Return the points of a surface's file in its unit, or None with the mistakes reported."""
-    entry = surface if isinstance(surface, dict) else {}
-    if isinstance(surface, dict) and not entry.keys() & {"points", *SURFACES_TO_COME}:
-        document.report(("surface",), "must name a file of points: {points: file.csv}")
-    file = entry.get("points")
-    if isinstance(file, str) and file:
-        try:
-            return read_points(directory / file, document.see_the_time)
-        except InputError as error:
-            _adopt(document, ("surface", "points"), error)
-    return None
+def _surface_files(document: Document, surface: object, directory: Path) -> dict[int, FloatArray]:
+    """Return what the files of surfaces hold, by the surfaces' numbers, with their mistakes reported."""
+    read = {}
+    for index, entry in enumerate(surface if isinstance(surface, list) else [surface]):
+        path: KeyPath = ("surface", index) if isinstance(surface, list) else ("surface",)
+        for kind, reader in (("points", read_points), ("mesh", read_corners)):
+            file = entry.get(kind) if isinstance(entry, dict) else None
+            if isinstance(file, str) and file:
+                try:
+                    read[index] = reader(directory / file, document.see_the_time)
+                except InputError as error:
+                    _adopt(document, (*path, kind), error)
+    return read
 
 
 def named_robot(document: Document, reference: str, directory: Path) -> Robot | None:

@@ -21,12 +21,14 @@ from synth.task.entry_types import (
     Name,
     Position,
     Positive,
+    SolidEntry,
     Strict,
     absent,
     without_case,
 )
 from synth.task.model import Floor, Objective, Topology
 from synth.task.robot_schema import FileOfARobot, RobotFile
+from synth.task.surface_schema import Surfaces  # noqa: TC001 - pydantic reads the annotation
 
 
 def _at_base() -> Any:
@@ -63,52 +65,10 @@ class TargetEntry(Strict):
     )
 
 
-class SphereEntry(Strict):
-    """A ball."""
-
-    center: Position = Field(description="[x, y, z] in the task frame")
-    radius: Positive = Field(description="its radius")
-
-
-class BoxEntry(Strict):
-    """A box with vertical edges."""
-
-    center: Position = Field(description="[x, y, z] in the task frame")
-    size: Annotated[list[Positive], Field(min_length=3, max_length=3)] = Field(
-        description="its extent along its own x, y and z axes"
-    )
-    yaw_deg: Angle = Field(default=0.0, description="rotation of these axes about the vertical")
-
-
-class CapsuleEntry(Strict):
-    """All points within a radius of a segment."""
-
-    from_: Position = Field(alias="from", description="one end of the segment")
-    to: Position = Field(description="the other end")
-    radius: Positive = Field(description="its radius")
-
-
-class ObstacleEntry(Strict):
+class ObstacleEntry(SolidEntry):
     """A solid to keep clear of: one of sphere, box and capsule."""
 
     name: Name = Field(default_factory=absent, description="how the result speaks of it")
-    sphere: SphereEntry = Field(default_factory=absent, description="a ball: center, radius")
-    box: BoxEntry = Field(default_factory=absent, description="a box: center, size, yaw_deg")
-    capsule: CapsuleEntry = Field(default_factory=absent, description="a thick segment: from, to, radius")
-
-    @property
-    def solid(self) -> SphereEntry | BoxEntry | CapsuleEntry:
-        """The one that is given."""
-        return next(solid for solid in (self.sphere, self.box, self.capsule) if solid is not None)
-
-    @model_validator(mode="after")
-    def _one_solid(self) -> ObstacleEntry:
-        """Ask for exactly one solid."""
-        given = [kind for kind in ("sphere", "box", "capsule") if getattr(self, kind) is not None]
-        if len(given) != 1:
-            wrong = f"has {' and '.join(given)}" if given else "has no solid"
-            raise ValueError(f"{wrong}, but is one of sphere, box and capsule")
-        return self
 
 
 class ArcEntry(Strict):
@@ -144,17 +104,6 @@ class CurrentEntry(Strict):
         return self
 
 
-class SurfaceEntry(Strict):
-    """A surface that the workspace must pass through."""
-
-    points: Annotated[str, Field(min_length=1)] = Field(
-        default_factory=absent, description="path of a CSV file of points x,y,z in the task frame"
-    )
-    tolerance: Positive = Field(
-        default_factory=absent, description="largest miss of each point; 1 mm if absent"
-    )
-
-
 class TaskFile(FileOfARobot):
     """A task file."""
 
@@ -171,7 +120,9 @@ class TaskFile(FileOfARobot):
         default=Objective.LEAST_SQUARES, description="norm of miss over tolerance"
     )
     targets: Annotated[list[TargetEntry], Field(min_length=1)] = Field(description="the points to reach")
-    surface: SurfaceEntry = Field(default_factory=absent, description="a surface, given by points of it")
+    surface: Surfaces = Field(
+        default_factory=absent, description="a surface to be covered, or a list of them"
+    )
     obstacles: list[ObstacleEntry] = Field(default=[], description="solids to keep clear of")
     current: CurrentEntry = Field(
         default_factory=absent, description="the present shape of the link, which is to change little"

@@ -8,6 +8,7 @@ what is asked about is what no task means:
 - all targets within a hundredth of the robot's reach about P1: that is inside the base's own column (12 mm
   for the prototype, whose link is 50 mm thick);
 - all targets farther from P1 than 20 times the reach;
+- a surface smaller than a 500th of the reach, larger than 40 times or all farther away than 20 times that;
 - a link shorter than a 20th of the longer of d12 and d34, or longer than 1000 times that one (the
   prototype's is 12 times as long).
 """
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from synth.robot import Robot
+    from synth.surfaces import Surface
     from synth.task.model import Task
 
 PER_METRE = {"mm": 1000.0, "cm": 100.0, "m": 1.0}  # to divide by: 455 / 1000 is 0.455 exactly
@@ -34,6 +36,8 @@ _NEAR = 0.01  # of the reach: targets that are all nearer are in another unit
 _FAR = 20.0  # of the reach, likewise targets that are all farther
 _SHORT = 0.05  # of the longer of d12 and d34, likewise a shorter link
 _LONG = 1000.0  # of that, likewise a longer one
+_SMALL = 0.002  # of the reach: a surface that is smaller is in another unit
+_LARGE = 40.0  # of the reach, likewise a larger one
 _MEANT = (0.1, 1.5)  # of the reach: where the farthest target is in a unit that may be meant
 
 
@@ -69,6 +73,13 @@ def unmeant_sizes_of_robot(robot: Robot) -> list[Mistake]:
 def unmeant_distances(task: Task, unit: str | None = None) -> list[Mistake]:
     """Return what is wrong with the distances of all targets from P1, beside what the robot reaches."""
     reach = reach_of(task.robot)
+    surfaces = [
+        Mistake(wrong, key=f"surface[{number}]" if len(task.surfaces) > 1 else "surface")
+        for number, surface in enumerate(task.surfaces)
+        if (wrong := _unmeant_surface(surface, task, reach))
+    ]
+    if surfaces:
+        return surfaces
     distances = np.linalg.norm(task.positions_in_base, axis=1)
     nearest, farthest = float(distances.min()), float(distances.max())
     if _NEAR * reach <= farthest and nearest <= _FAR * reach:
@@ -85,6 +96,31 @@ def unmeant_distances(task: Task, unit: str | None = None) -> list[Mistake]:
             question += f" In {other} the farthest would be {_told(number / per_metre, rounded_up)} away"
             break
     return [Mistake(f"{sentence}: {question}", key="targets")]
+
+
+def _unmeant_surface(surface: Surface, task: Task, reach: float) -> str:
+    """Return what is wrong with a surface's size, or with how far away it is; nothing if it may be meant."""
+    points = surface.samples.points
+    size = float(np.linalg.norm(np.ptp(points, axis=0)))
+    nearest = float(np.linalg.norm(task.base.to_base(points), axis=1).min())
+    told = f"this robot reaches {_told(reach, rounded_up)} at most"
+    if len(points) > 1 and size < _SMALL * reach:
+        wrong = f"{surface.name} is {_told(size)} large, and {told}"
+    elif size > _LARGE * reach:
+        wrong = f"{surface.name} is {_told(size, rounded_down)} large, and {told}"
+    elif nearest > _FAR * reach:
+        return (
+            f"{surface.name} is at least {_told(nearest, rounded_down)} from P1, and {told}: is its "
+            "length_unit right, and are its coordinates those of the task frame (pose moves it)?"
+        )
+    else:
+        return ""
+    meant = [
+        f"a length_unit {by:g} times as {'long' if by > 1.0 else 'short'} would make it {_told(by * size)}"
+        for by in (1000.0, 100.0, 10.0, 0.1, 0.01, 0.001)
+        if _MEANT[0] * reach <= by * size <= _MEANT[1] * reach
+    ]
+    return ": ".join([f"{wrong}: is its length_unit right?", *meant[:1]]).replace("?:", "?")
 
 
 def reach_of(robot: Robot) -> float:

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 from synth.checks import described
 from synth.files import KeyPath, Refused, key_text
 from synth.names import did_you_mean, guesses
-from synth.task.entry_types import MAPPING, ONE, RANGE, SURFACES_TO_COME, TEXT
+from synth.task.entry_types import MAPPING, ONE, RANGE, TEXT
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -22,13 +22,7 @@ if TYPE_CHECKING:
 _M = TypeVar("_M", bound=BaseModel)
 
 _LATER = "not supported by this version of synth yet; "
-_LATER_KEYS = {
-    **{
-        f"surface.{kind}": f"a surface as a {kind} is {_LATER}give points of it: {{points: file.csv}}"
-        for kind in SURFACES_TO_COME
-    },
-    "path": f"a path to be followed is {_LATER}give points under 'targets'",
-}
+_LATER_KEYS = {"path": f"a path to be followed is {_LATER}give points under 'targets'"}
 _SENTENCES = {
     "float_type": "must be a number, but is {value}",
     "one_or_range": "must be a number or [low, high], but is {value}",
@@ -54,6 +48,10 @@ _SENTENCES_AT: dict[KeyPath, dict[str, str]] = {
         "must be 1, the only version of this format, but is {value}",
     ),
     ("targets",): {"too_short": "must hold one target at least, but is an empty list"},
+    ("surface",): {
+        "too_short": "must hold one surface at least, but is an empty list",
+        "union_tag_not_found": "must be a mapping (key: value) or a list of them, but is {value}",
+    },
     ("base", "choices"): {"too_short": "must hold one place at least, but is an empty list"},
 }
 

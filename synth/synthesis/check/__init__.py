@@ -1,16 +1,23 @@
 """The independent check of a shape, by forward kinematics; it imports no other part of the synthesis."""
 
+from synth.synthesis.check.between import between_samples, proven_between
 from synth.synthesis.check.clearances import clear_of_everything, seen_by
+from synth.synthesis.check.covering import Between, Covering, counted
 from synth.synthesis.check.target_results import TargetResult, joints_reaching, target_results, worst_targets
 from synth.synthesis.check.verification import Verification, verify
 from synth.synthesis.check.violations import Violation
 
 __all__ = [
+    "Between",
+    "Covering",
     "TargetResult",
     "Verification",
     "Violation",
+    "between_samples",
     "clear_of_everything",
+    "counted",
     "joints_reaching",
+    "proven_between",
     "seen_by",
     "target_results",
     "verify",

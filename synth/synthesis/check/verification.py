@@ -13,7 +13,8 @@ from synth.arrays import FloatArray, frozen, frozen_value
 from synth.checks import refuse_unless
 from synth.robot import Arm
 from synth.synthesis.check.approaches import beyond_direction, pointing_astray
-from synth.synthesis.check.clearances import chosen_joints
+from synth.synthesis.check.clearances import Clearances, chosen_joints
+from synth.synthesis.check.covering import Between, Covering, counted, coverings
 from synth.synthesis.check.violations import Violation, violations
 from synth.task import Task
 
@@ -36,6 +37,10 @@ class Verification:
         violations: Limits that the shape breaks; empty for a shape that the hardware can take.
         unseen: How many more targets are asked for that were not looked at, for lack of time: with any, no
             shape counts as found.
+        coverings: What is covered of each surface.
+        reaches_all: Whether every target of its own is reached, and as much of each surface as was asked for.
+        between: What is proven of the surfaces that are known between their samples, see `between_samples`;
+            empty before that was looked at.
     """
 
     joints: FloatArray
@@ -47,6 +52,9 @@ class Verification:
     clearances: FloatArray
     violations: tuple[Violation, ...]
     unseen: int = 0
+    coverings: tuple[Covering, ...] = ()
+    reaches_all: bool = False
+    between: tuple[Between, ...] = ()
 
     @property
     def possible(self) -> bool:
@@ -55,8 +63,8 @@ class Verification:
 
     @property
     def found(self) -> bool:
-        """Whether the shape is possible and reaches every target within its tolerance."""
-        return self.possible and all(self.within_tolerance) and not self.unseen
+        """Whether the shape is possible and reaches every target within its tolerance, of surfaces enough."""
+        return self.possible and self.reaches_all and not self.unseen
 
 
 def verify(task: Task, arm: Arm, joints: FloatArray | None = None, *, keep: bool = False) -> Verification:
@@ -83,6 +91,15 @@ def verify(task: Task, arm: Arm, joints: FloatArray | None = None, *, keep: bool
     blocked = sunk | ~room.clear
     misses = np.linalg.norm(reached - task.table.positions, axis=-1)
     within = (misses <= task.tolerances) & ~blocked & (beyond_direction(task, arm, chosen) == 0.0)
+    if task.is_partial:  # what stands at targets that may be left breaks no limit
+        counts = counted(task, np.where(within, misses, misses + task.tolerances))
+        broken = violations(
+            task, arm, chosen[counts], reached[counts], Clearances.of(task, arm, chosen[counts])
+        )
+    else:
+        broken = violations(task, arm, chosen, reached, room)
+    covered = coverings(task, misses, within)
+    of_its_own = task.surface_of_targets < 0
     return Verification(
         joints=frozen(chosen),
         reached=frozen(reached),
@@ -91,5 +108,7 @@ def verify(task: Task, arm: Arm, joints: FloatArray | None = None, *, keep: bool
         gamma_residuals=frozen(arm.surface.residual(arm.base.to_base(reached))),
         astray=frozen(pointing_astray(task, arm, chosen)),
         clearances=frozen(room.from_obstacles.min(axis=(-2, -1), initial=math.inf)),
-        violations=violations(task, arm, chosen, reached, room),
+        violations=broken,
+        coverings=covered,
+        reaches_all=bool(within[of_its_own].all()) and all(each.met for each in covered),
     )

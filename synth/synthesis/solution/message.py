@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,11 +14,15 @@ from synth.synthesis.starts import exact_arms
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from synth.arrays import FloatArray
     from synth.synthesis.check import Verification
     from synth.synthesis.wanted import Design
     from synth.task import Task
 
 _REACHED_WITHOUT_WAY = "every target is reached, but"
+_ENOUGH_COVERED = "as much of every surface as was asked for is within its tolerance, and every target"
+_PASSES_AXIS = 3.0  # deg
+_NEIGHBOURS = 20
 _REASONS = 3  # of a kind that are told
 
 
@@ -53,6 +58,9 @@ def ending(status: Status, designs: Sequence[Design]) -> str:
     ways = designs[0].ways if designs and designs[0].verification.found else ()
     no_way = [f"no way was found from {way.start} to {way.end}" for way in ways if not way.found]
     if not no_way:
+        partial = designs and any(each.asked < 1.0 for each in designs[0].verification.coverings)
+        if partial and designs[0].verification.found:
+            return _ENOUGH_COVERED
         return status.told(with_shape=bool(designs))
     more = [f"and {len(no_way) - _REASONS} more"] if len(no_way) > _REASONS else []
     return f"{_REACHED_WITHOUT_WAY} {'; '.join([*no_way[:_REASONS], *more])}"
@@ -75,7 +83,7 @@ def why_no_better(task: Task, designs: Sequence[Design], blocked: Sequence[Desig
         blocked: Shapes that the hardware cannot take.
     """
     if designs:
-        return _why_not_exact(task)
+        return (*not_of_revolution(task), *_why_not_exact(task))
     # As far as the shape tells that breaks the fewest limits.
     nearest = min((d.verification.violations for d in blocked), key=len, default=())
     blocking = [violation.sentence for violation in nearest[:_REASONS]]
@@ -85,6 +93,18 @@ def why_no_better(task: Task, designs: Sequence[Design], blocked: Sequence[Desig
 def _what_misses(task: Task, design: Design) -> list[str]:
     """Return a sentence for each target that is not reached, the worst first, three at most."""
     check = design.verification
+    of_surfaces = [covering.sentence for covering in check.coverings if not covering.met]
+    of_surfaces += [each.sentence for each in check.between if not each.met]
+    if task.surfaces:
+        own = np.flatnonzero(task.surface_of_targets < 0)
+        missed = [index for index in own.tolist() if not check.within_tolerance[index]]
+        return [
+            *of_surfaces,
+            *(
+                f"{task.table.names[i]} misses by {rounded_up(check.misses[i], digits=2)} mm"
+                for i in missed[:3]
+            ),
+        ]
     order = np.argsort(-check.misses / task.tolerances)
     order = order[~np.array(check.within_tolerance)[order]]
     sentences = [_how_missed(task, check, index) for index in order[:3].tolist()]
@@ -106,3 +126,38 @@ def _why_not_exact(task: Task) -> tuple[str, ...]:
         return ()
     count = len(task.targets)
     return (f"no arm with this rigid link passes exactly through such {count} targets, by algebra",)
+
+
+def not_of_revolution(task: Task) -> tuple[str, ...]:
+    """Return a sentence for each surface that is none of revolution about axis 1, as every workspace is.
+
+    All normals of such a surface meet its axis. Those of a scan are taken from its neighbouring points.
+    """
+    if task.places is not None:
+        return ()
+    told = []
+    for surface in task.surfaces:
+        cells = surface.samples
+        points = task.base.to_base(cells.points)
+        normals = cells.normals @ task.base.rotation if cells.are_joined else _normals_of(points)
+        around = np.stack([-points[:, 1], points[:, 0]], axis=-1)
+        around /= np.maximum(np.linalg.norm(around, axis=1, keepdims=True), 1e-12)
+        sines = np.abs(np.einsum("ni,ni->n", normals[:, :2], around))
+        passed = float(np.degrees(np.arcsin(np.clip(np.median(sines), 0.0, 1.0))))
+        if passed >= _PASSES_AXIS:
+            told.append(
+                f"{surface.name} is no surface of revolution about axis 1, and every workspace is one: at "
+                f"half of its samples the normal passes the axis by {math.floor(passed)} deg or more"
+            )
+    return tuple(told)
+
+
+def _normals_of(points: FloatArray) -> FloatArray:
+    """Return unit normals of planes through each point's neighbours, shape (n, 3)."""
+    from scipy.spatial import cKDTree  # type: ignore[import-untyped]  # noqa: PLC0415
+
+    if len(points) < _NEIGHBOURS:
+        return np.zeros_like(points)
+    beside = points[cKDTree(points).query(points, _NEIGHBOURS)[1]]
+    spread = beside - beside.mean(axis=1, keepdims=True)
+    return np.asarray(np.linalg.eigh(np.einsum("nki,nkj->nij", spread, spread))[1][..., 0])

@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from synth.robot import MOST_CLEARANCE
 from synth.rounding import Unit, counted, rounded_down, rounded_up
 from synth.sentences import FOUND, MISSED, bulleted
 from synth.synthesis.check import target_results, worst_targets
+from synth.synthesis.solution.surface_text import surface_lines
 from synth.synthesis.wanted import ways_and_forgiveness
 from synth.task import DEFAULT_TOLERANCE
 
@@ -31,11 +34,18 @@ def _direction_told(target: TargetResult) -> str:
 
 def target_lines(task: Task, design: Design) -> list[str]:
     """Return a line for each target, names and numbers in columns; of many targets the worst only."""
-    lines, count, shown = [], len(task.targets), None
-    if count > _MOST_TARGETS:
+    lines, count, shown = surface_lines(design), len(task.targets), None
+    if task.is_partial or any(each.is_joined for each in design.verification.coverings):
+        own = np.flatnonzero(task.surface_of_targets < 0)
+        if not len(own):
+            return lines
+        worst = worst_targets(task, design.verification, count)
+        shown = worst[np.isin(worst, own)][:_MOST_TARGETS]
+    elif count > _MOST_TARGETS:
         reached = sum(design.verification.within_tolerance)
         are = "is" if reached == 1 else "are"
-        lines = [bulleted(f"{reached} of {count} targets {are} within tolerance; the {_MOST_TARGETS} worst:")]
+        told = f"{reached} of {count} targets {are} within tolerance; the {_MOST_TARGETS} worst:"
+        lines.append(bulleted(told))
         shown = worst_targets(task, design.verification, _MOST_TARGETS)
     targets = target_results(task, design.arm, design.verification, shown)
     width = max(len(target.name) for target in targets)

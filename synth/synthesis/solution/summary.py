@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.rounding import counted, rounded_up
+from synth.rounding import counted
 from synth.sentences import FOUND, MISSED, bulleted, headed
 from synth.synthesis.solution.message import Status, ending
 from synth.synthesis.solution.shape_text import shape_lines, target_lines
+from synth.synthesis.solution.surface_text import met_tolerances
 
 if TYPE_CHECKING:
     from synth.synthesis.solution.outcome import Outcome
@@ -59,8 +60,7 @@ def help_told(outcome: Outcome) -> list[str]:
     told = [f"{release.sentence} would do" for release in outcome.releases]
     open_yet = outcome.status is not Status.PROVEN_IMPOSSIBLE
     if open_yet and outcome.designs and not outcome.designs[0].verification.violations:
-        worst = rounded_up(float(outcome.designs[0].verification.misses.max()), digits=2)
-        told.append(f"tolerances of {worst} mm would be met by the nearest shape found")
+        told += met_tolerances(outcome.task, outcome.designs[0])
     told += outcome.notes
     if outcome.status is Status.LIMIT:
         told.append("more time may find a shape")

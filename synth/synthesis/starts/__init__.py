@@ -6,6 +6,7 @@ from synth.synthesis.starts.refinement import level, refine
 from synth.synthesis.starts.screening import estimated_misses
 from synth.synthesis.starts.start_points import Start, start_points
 from synth.synthesis.starts.thinning import thinned
+from synth.synthesis.starts.trimming import covered_part, most_covered
 from synth.synthesis.starts.turned_arms import (
     SAMPLE,
     as_it_is_and_turned,
@@ -19,9 +20,11 @@ __all__ = [
     "Refined",
     "Start",
     "as_it_is_and_turned",
+    "covered_part",
     "estimated_misses",
     "exact_arms",
     "level",
+    "most_covered",
     "nearest_to_exact_arms",
     "random_part",
     "refine",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.synthesis.shapes import Postures, TargetsSeen, category_offsets, category_slopes, overlaps
-from synth.synthesis.starts.refined import Refined, relative_weights
+from synth.synthesis.starts.refined import Refined, Trimmed, relative_weights
 from synth.synthesis.starts.residuals import Residuals
 from synth.task import Objective
 
@@ -56,6 +56,7 @@ class Descent:
     ) -> None:
         self._is_up = is_up
         self._task, self._aims, self._weights, self._clear = task, aims, relative_weights(task), clear
+        self._trimmed = Trimmed(task)
         self._shapes, self._postures = shapes, postures
         self._damping = np.full(len(shapes.length), _FIRST_DAMPING)
         self._exponent = _SQUARES
@@ -107,7 +108,7 @@ class Descent:
         2 / p: the mean squared miss for p = 2, nearly the worst, and never above it, for a large p.
         """
         if self._exponent == _SQUARES:
-            return postures.squared @ self._weights, np.broadcast_to(self._weights, postures.squared.shape)
+            return self._trimmed.shares(postures.squared)
         weights = len(self._weights) * self._weights
         squared = postures.squared * weights
         worst = squared.max(axis=1) + _TINY

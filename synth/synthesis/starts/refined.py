@@ -51,3 +51,44 @@ def relative_weights(task: Task) -> FloatArray:
     """Return each target's factor of its squared miss, shape (n,); the tightest has about 1 / n."""
     weights = task.weights * (task.tolerances.min() / task.tolerances) ** 2
     return np.asarray(weights / len(weights))
+
+
+class Trimmed:
+    """Means over the targets that count: of a surface of which a part may be left, those missed least.
+
+    Args:
+        task: The task.
+    """
+
+    def __init__(self, task: Task) -> None:
+        self._weights = relative_weights(task)
+        of = task.surface_of_targets
+        parts = [
+            (np.flatnonzero(of == number), surface.coverage)
+            for number, surface in enumerate(task.surfaces)
+            if surface.coverage < 1.0
+        ]
+        self._parts = [(chosen, max(1, int(share * len(chosen)))) for chosen, share in parts if len(chosen)]
+
+    def weights(self, squared: FloatArray) -> FloatArray:
+        """Return the factors of squared misses, shape (N, n), of the targets that count; 0 of the others."""
+        weights = np.broadcast_to(self._weights, squared.shape)
+        if not self._parts:
+            return weights
+        weights = weights.copy()
+        for chosen, count in self._parts:
+            of_it = squared[:, chosen]
+            left = of_it > np.partition(of_it, count - 1, axis=1)[:, count - 1 : count]
+            weights[:, chosen] = np.where(left, 0.0, weights[:, chosen])
+        return weights
+
+    def shares(self, squared: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the means, shape (N,), and the factors of the squared misses, shape (N, n)."""
+        weights = self.weights(squared)
+        if not self._parts:
+            return squared @ self._weights, weights
+        return np.asarray(np.einsum("Nn,Nn->N", squared, weights)), weights
+
+    def mean(self, squared: FloatArray) -> FloatArray:
+        """Return the weighted means of squared misses, shape (N, n), over what counts, shape (N,)."""
+        return self.shares(squared)[0]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.synthesis.check import counted
 from synth.synthesis.wanted.judging import judged
 from synth.task import Objective
 from synth.watch import never
@@ -121,7 +122,7 @@ def _order_of(table: FloatArray, changes: Sequence[float | None]) -> NDArray[np.
 
 
 def objective(task: Task, design: Design) -> float:
-    """Return the task's objective: the weighted (miss / tolerance)^2, summed or worst.
+    """Return the task's objective: the weighted (miss / tolerance)^2 of all that counts, summed or worst.
 
     What points farther beside the direction asked for than it may counts like a miss, by its own tolerance.
     """
@@ -130,6 +131,8 @@ def objective(task: Task, design: Design) -> float:
         allowed = task.table.approaches[:, 3]
         relative = relative + np.nan_to_num(np.maximum(design.verification.astray / allowed - 1.0, 0.0)) ** 2
     weighted = task.weights * relative
+    if task.is_partial:
+        weighted = weighted[counted(task, design.verification.misses)]
     return float(weighted.max() if task.objective is Objective.MINIMAX else weighted.sum())
 
 

@@ -1,4 +1,4 @@
-"""Points from a CSV file: a scanned surface, of up to some millions of them."""
+"""Points from a CSV, XYZ or PLY file: a scanned surface, of up to some millions of them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.errors import InputError, Mistake
-from synth.task.entry_types import LARGEST
+from synth.surfaces.mesh_file import LARGEST, content_of, read_vertices
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
 
-_MAX_BYTES = 200_000_000
 _COLUMNS = ["x", "y", "z"]
 _MISTAKES_AT_MOST = 10  # named one by one; of a file of another kind every line is wrong
 _NUMBER = re.compile(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?")
@@ -25,6 +24,9 @@ _QUOTED_AT_MOST = 20  # characters of a cell
 
 def read_points(path: Path, see_the_time: Callable[[], None] = lambda: None) -> FloatArray:
     """Read the points of a CSV file, one a line: x, y and z, under a header of these names or none.
+
+    In a file whose name ends in `.xyz` spaces stand between, `#` begins a remark, and what follows the third
+    number does not count. Of a `.ply` file the vertices are the points.
 
     Args:
         path: The file; empty lines are passed over.
@@ -36,19 +38,14 @@ def read_points(path: Path, see_the_time: Callable[[], None] = lambda: None) -> 
     Raises:
         InputError: The file cannot be read or is wrong; with the first ten mistakes and their lines.
     """
+    if path.suffix.lower() == ".ply":
+        return read_vertices(path, see_the_time)
     try:
-        with path.open("rb") as stream:
-            content = stream.read(_MAX_BYTES + 1)
-        lines = content.decode("utf-8-sig").splitlines()
+        lines = content_of(path).decode("utf-8-sig").splitlines()
     except UnicodeDecodeError:
         raise InputError([Mistake("is not a text file in UTF-8", str(path))]) from None
-    except FileNotFoundError:
-        raise InputError([Mistake("there is no such file", str(path))]) from None
-    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
-        reason = getattr(error, "strerror", None) or error
-        raise InputError([Mistake(f"cannot be read: {reason}", str(path))]) from None
-    if len(content) > _MAX_BYTES:
-        raise InputError([Mistake(f"is larger than {_MAX_BYTES // 1_000_000} MB", str(path))])
+    if path.suffix.lower() == ".xyz":  # columns with spaces between, and maybe colours behind the first three
+        lines = [",".join(line.split("#", 1)[0].split()[:3]) for line in lines]
     see_the_time()
     first = next((number for number, line in enumerate(lines) if line.strip()), None)
     start = first + 1 if first is not None and _is_header(lines[first]) else 0

@@ -1,0 +1,173 @@
+"""What a shape covers of a surface between its samples: a bound, not another sample.
+
+Of a cell with the point c the arm reaches P at joint angles q, and misses c by e = c - P. Any other point x
+of the cell is x = c + t + w, with t in the surface's tangent plane at c, |t| <= r, and w along its normal,
+|w| <= k r^2 / 2, for a way of length r on a surface whose normal curvature is k at most. Joints that follow t
+as far as it lies in the tangent plane of the workspace move P by that part of t and by a rest which second
+derivatives of P5 bound, |P''| <= rho and R. So x is missed by at most
+
+    |e| + r sin(phi) + k r^2 / 2 + (rho a^2 + 2 R a b + R b^2) r^2 / 2,
+
+phi the angle between the two planes, a and b the largest turns of the joints for a unit of t, rho the largest
+distance from axis 1 on the way; if the joints may turn so far. In any case it is missed by at most |e| + r.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.synthesis.check.covering import Between
+from synth.synthesis.check.verification import verify
+from synth.task import points_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from synth.arrays import FloatArray
+    from synth.robot import Arm
+    from synth.surfaces import Cells, Surface
+    from synth.synthesis.check.verification import Verification
+    from synth.task import Task
+    from synth.watch import Watch
+
+_FINER = (4, 16, 64)  # times the cells of the samples, where these do not prove that the surface is covered
+_MOST_CELLS = 60_000  # that are looked at together
+
+
+def proven_between(task: Task, arm: Arm, check: Verification, watch: Watch) -> Verification:
+    """Return what a shape does with what is proven of its surfaces; without a proof it reaches not all.
+
+    Args:
+        task: The task.
+        arm: The robot in the shape.
+        check: What it does at the targets.
+        watch: When it is up, no finer cells are looked at.
+    """
+    if not check.found:
+        return check
+    between = tuple(
+        between_samples(task, arm, surface, watch) for surface in task.surfaces if surface.samples.are_joined
+    )
+    return replace(check, between=between, reaches_all=all(each.met for each in between))
+
+
+def between_samples(task: Task, arm: Arm, surface: Surface, watch: Watch) -> Between:
+    """Return what is proven to be covered of a surface that is known between its samples.
+
+    Args:
+        task: The task.
+        arm: The robot in a shape.
+        surface: One of the task's surfaces.
+        watch: When it is up, no finer cells are looked at.
+    """
+    level = _Level(*surface.divided(len(surface.samples)))
+    level.look(task, arm, surface)
+    for finer in _FINER:
+        told = level.told(surface)
+        if told.met or watch.is_up():
+            return told
+        level = level.finer(*surface.divided(finer * len(surface.samples)), surface)
+        if level.unknown > _MOST_CELLS:
+            return told
+        level.look(task, arm, surface)
+    return level.told(surface)
+
+
+class _Level:
+    """A surface in cells, and what is proven of each.
+
+    Args:
+        cells: Cells of all of its shape.
+        counts: Which of them count, shape (n,).
+        most: By how much each is missed at most where that is known already, shape (n,), m; NaN elsewhere.
+    """
+
+    def __init__(self, cells: Cells, counts: NDArray[np.bool_], most: FloatArray | None = None) -> None:
+        self._cells, self._counts = cells, counts
+        self._most = np.full(len(cells), np.nan) if most is None else most
+
+    @property
+    def unknown(self) -> int:
+        """Of how many cells nothing is known."""
+        return int(np.count_nonzero(self._counts & np.isnan(self._most)))
+
+    def look(self, task: Task, arm: Arm, surface: Surface) -> None:
+        """Bound what is missed of the cells of which that is not known."""
+        chosen = np.flatnonzero(self._counts & np.isnan(self._most))
+        if not len(chosen):
+            return
+        cells = self._cells.take(chosen)
+        check = verify(replace(task, targets=points_of(surface, cells), surfaces=()), arm)
+        bounds = largest_misses(arm, check.joints, check.misses, cells)
+        self._most[chosen] = np.where(check.within_tolerance, bounds, np.inf)
+
+    def finer(self, cells: Cells, counts: NDArray[np.bool_], surface: Surface) -> _Level:
+        """Return finer cells; of those that only cells can meet which are proven that is known already.
+
+        A cell that meets another has its point no farther from the other's than both their radii.
+        """
+        from scipy.spatial import cKDTree  # type: ignore[import-untyped]  # noqa: PLC0415
+
+        proven = self._counts & (self._most <= surface.tolerance)
+        away = cKDTree(self._cells.points[~proven]).query(cells.points)[0]
+        is_known = away > float(self._cells.radii.max()) + cells.radii
+        worst = float(self._most[proven].max(initial=0.0))
+        return _Level(cells, counts, np.where(is_known, worst, np.nan))
+
+    def told(self, surface: Surface) -> Between:
+        """Return what is proven of the surface."""
+        most, cells = self._most[self._counts], self._cells.take(self._counts)
+        order, whole = np.argsort(most, kind="stable"), cells.areas.sum()
+        last = int(np.searchsorted(np.cumsum(cells.areas[order]), (surface.coverage - 1e-9) * whole))
+        return Between(
+            surface.name,
+            surface.coverage,
+            float(cells.areas[most <= surface.tolerance].sum() / whole),
+            float(most[order[min(last, len(order) - 1)]]),
+            len(cells),
+            float(cells.radii.max()),
+            _outmost(cells, ~(most <= surface.tolerance)),
+        )
+
+
+def _outmost(cells: Cells, chosen: NDArray[np.bool_]) -> FloatArray:
+    """Return of some cells the ends that lie away from the middle of all, shape (k, 3), m."""
+    some = cells.take(chosen)
+    away = some.points - cells.points.mean(axis=0)
+    away -= np.einsum("ni,ni->n", away, some.normals)[:, None] * some.normals
+    away /= np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-12)
+    return np.asarray(some.points + some.radii[:, None] * away)
+
+
+def largest_misses(arm: Arm, joints: FloatArray, misses: FloatArray, cells: Cells) -> FloatArray:
+    """Return a bound of what is missed of each cell, shape (n,), m; see above.
+
+    Args:
+        arm: The robot in a shape.
+        joints: Joint angles at the cells' points, shape (n, 2), rad.
+        misses: What P5 is off these points there, shape (n,), m.
+        cells: The cells.
+    """
+    kinematics, limits, r = arm.kinematics, arm.robot.joint_limits, cells.radii
+    reached = kinematics.forward(joints[:, 0], joints[:, 1])
+    first, second = kinematics.velocities(joints, reached)
+    normal = np.cross(first, second)
+    length = np.linalg.norm(normal, axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        a, b = (np.linalg.norm(v, axis=1) / length for v in (second, first))
+        cosine = np.abs(np.einsum("ni,ni->n", normal / length[:, None], cells.normals @ arm.base.rotation))
+        sine = np.sqrt(np.maximum(1.0 - cosine**2, 0.0))
+        radius = float(kinematics.radius)
+        rho = np.hypot(reached[:, 0], reached[:, 1]) + r + radius * b * r
+        turning = 0.5 * (rho * a**2 + 2.0 * radius * a * b + radius * b**2) * r**2
+        bound = misses + r * sine + 0.5 * cells.curvatures * r**2 + turning
+        spare = [
+            np.minimum(angle - limit.lower, limit.upper - angle)
+            for angle, limit in zip(joints.T, (limits.base, limits.second), strict=True)
+        ]
+        follows = (a * r <= spare[0]) & (b * r <= spare[1])
+    usable = follows & np.isfinite(bound)
+    return np.where(usable, np.minimum(np.where(usable, bound, 0.0), misses + r), misses + r)
