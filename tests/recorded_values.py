@@ -15,6 +15,7 @@ from planted import ROBOT, planted_task
 from planted_approaches import planted_approach
 from planted_bases import planted_base
 from planted_obstacles import planted_with_obstacles
+from planted_surfaces import as_mesh, as_points, as_torus
 from sampled_shapes import noisy_task
 from standing import BARS, HOLD, SIGMA, seen
 
@@ -33,6 +34,7 @@ from synth.measurement.distances.reading import parse_measurements
 from synth.measurement.markers.calibration import calibrate
 from synth.robot import Arm, BaseChoices, LinkShape, Workspace, link_to_pose, why_no_link
 from synth.robot.arm_in_shape import ArmInShape
+from synth.surfaces import Rectangle
 from synth.sweep import solve_many
 from synth.synthesis import Release, solve, verify
 from synth.synthesis.bound import prove
@@ -88,6 +90,7 @@ def recorded_values(folder):
         _exact()
         _small()
         _free_bases()
+        _surfaces()
     return made
 
 
@@ -151,6 +154,12 @@ def _free_bases():
     make_guide((solution := solve(task)).task, solution.best)
     solve(replace(task, places=BaseChoices(["here"], [base])), alternatives=0)
     planted_approach(0)
+
+
+def _surfaces():
+    for task in (as_points(0, 40)[0], as_mesh(0, 4)[0], as_torus(0)):
+        solve(task, alternatives=0, time_limit=3.0)
+    Rectangle([1.0, 0.5])
 
 
 def _small():

@@ -120,18 +120,15 @@ class Task:
             checks.number("floor")
         checks.word("topology", Topology)
         checks.word("objective", Objective)
-        if _are_all(checks, "obstacles", self.obstacles, Obstacle):
-            checks.put("obstacles", tuple(self.obstacles))
-            names = [obstacle.name for obstacle in self.obstacles]
-            _report_names_given_twice(checks, "obstacles", names, given_twice(names))
+        for key, kind in (("obstacles", Obstacle), ("surfaces", Surface)):
+            if _are_all(checks, key, given := getattr(self, key), kind):
+                checks.put(key, tuple(given))
+                names = [each.name for each in given]
+                _report_names_given_twice(checks, key, names, given_twice(names))
         if self.current is not None:
             checks.is_a("current", LinkShape)
         if self.places is not None:
             checks.is_a("places", (BaseRange, BaseChoices))
-        if _are_all(checks, "surfaces", self.surfaces, Surface):
-            checks.put("surfaces", tuple(self.surfaces))
-            names = [surface.name for surface in self.surfaces]
-            _report_names_given_twice(checks, "surfaces", names, given_twice(names))
         checks.refuse()
         if self.places is not None and not self.places.contains(self.base):
             checks.put("base", self.places.middle)
