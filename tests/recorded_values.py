@@ -38,6 +38,7 @@ from synth.surfaces import Rectangle
 from synth.sweep import solve_many
 from synth.synthesis import Release, solve, verify
 from synth.synthesis.bound import prove
+from synth.synthesis.check.between import between_samples
 from synth.synthesis.relaxed_limits import limits_of
 from synth.synthesis.solution import Outcome
 from synth.watch import Watch
@@ -159,6 +160,8 @@ def _free_bases():
 def _surfaces():
     for task in (as_points(0, 40)[0], as_mesh(0, 4)[0], as_torus(0)):
         solve(task, alternatives=0, time_limit=3.0)
+    task, arm = as_mesh(0, 4)
+    between_samples(task, arm, task.surfaces[0], Watch(1.0))
     Rectangle([1.0, 0.5])
 
 
