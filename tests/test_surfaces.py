@@ -8,8 +8,9 @@ from planted_surfaces import as_points, as_task, as_torus, patch
 
 from synth.errors import InputError
 from synth.geometry import Sphere, rotation_of
+from synth.guide import make_guide
 from synth.surfaces import Profile, Rectangle, Revolved, Scan, Surface, TriangleMesh
-from synth.synthesis import solve, verify
+from synth.synthesis import solve, verify, what_counts
 from synth.synthesis.check import between_samples, counted
 from synth.synthesis.check.between import largest_misses
 from synth.synthesis.solution.message import not_of_revolution
@@ -236,3 +237,15 @@ def test_without_trimesh_a_mesh_is_refused_with_what_to_install(tmp_path, monkey
     (tmp_path / "bowl.stl").write_text("solid")
     with pytest.raises(InputError, match="needs trimesh"):
         parse_task({**TASK, "surface": {"mesh": "bowl.stl"}}, directory=tmp_path)
+
+
+def test_what_may_be_left_of_a_surface_has_no_say_in_how_precisely_a_hand_must_work():
+    surface = {"sphere": {"center": [0, 0, 58], "radius": 500}, "coverage": 0.2, "tolerance": 20}
+    solution = solve(parse_task({**TASK, "surface": surface}), alternatives=0)
+    counting, check = what_counts(solution.task, solution.robot, solution.best.verification)
+    guide = make_guide(solution.task, solution.best)
+    assert solution.found
+    assert 0.2 <= counting.weights.sum() / solution.task.weights.sum() < 0.21
+    assert all(check.within_tolerance)
+    assert guide.tolerance.position > 1e-3
+    assert guide.forgiveness.expected_worst_miss < 0.1

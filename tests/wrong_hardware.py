@@ -100,10 +100,10 @@ WRONG_HARDWARE = {
     ),
     # what a later version brings
     "surface": (
-        TASK + "surface: {sphere: {center: [0, 0, 0], radius: 1}}\n",
-        "surface.sphere",
+        TASK + "surface: {sphere: {center: [0, 0, 0], radius: -1}}\n",
+        "surface.sphere.radius",
         13,
-        "not supported points",
+        "must be greater than 0",
     ),
     "path": (TASK + "path: {csv: a.csv}\n", "path", 13, "not supported targets"),
 }

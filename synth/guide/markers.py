@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,7 @@ from synth.guide.base_place import BasePlace, base_place
 from synth.guide.posture import HoldPosture, hold_posture
 from synth.guide.sensitivity import ShapeTolerance, shape_tolerance
 from synth.robot import BasePose
-from synth.synthesis import Design, ways_and_forgiveness
+from synth.synthesis import Design, ways_and_forgiveness, what_counts
 from synth.task import Task
 
 if TYPE_CHECKING:
@@ -136,9 +137,11 @@ def make_guide(task: Task, design: Design) -> Guide:
 @lru_cache(maxsize=8)
 def _guide(task: Task, design: Design) -> Guide:
     """Return the guide: text, JSON and sheet of a run ask for the same one."""
-    arm, check = design.arm, design.verification
-    stations, posture = _stations(arm.shape.length), hold_posture(task, arm)
+    arm = design.arm
     ways, forgiveness = ways_and_forgiveness(task, design)
+    task, check = what_counts(task, arm, design.verification)
+    design = replace(design, verification=check)
+    stations, posture = _stations(arm.shape.length), hold_posture(task, arm)
     return Guide(
         place=base_place(task, design),
         posture=posture,

@@ -10,6 +10,7 @@ from synth.synthesis.check import (
     Violation,
     target_results,
     verify,
+    what_counts,
     worst_targets,
 )
 from synth.synthesis.search import ALTERNATIVES
@@ -86,5 +87,6 @@ __all__ = [
     "verify",
     "way_is_clear",
     "ways_and_forgiveness",
+    "what_counts",
     "worst_targets",
 ]

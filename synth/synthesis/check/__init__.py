@@ -4,7 +4,7 @@ from synth.synthesis.check.between import between_samples, proven_between
 from synth.synthesis.check.clearances import clear_of_everything, seen_by
 from synth.synthesis.check.covering import Between, Covering, counted
 from synth.synthesis.check.target_results import TargetResult, joints_reaching, target_results, worst_targets
-from synth.synthesis.check.verification import Verification, verify
+from synth.synthesis.check.verification import Verification, verify, what_counts
 from synth.synthesis.check.violations import Violation
 
 __all__ = [
@@ -21,5 +21,6 @@ __all__ = [
     "seen_by",
     "target_results",
     "verify",
+    "what_counts",
     "worst_targets",
 ]

@@ -121,7 +121,7 @@ def counted(task: Task, misses: FloatArray) -> NDArray[np.bool_]:
 
     Args:
         task: The task.
-        misses: Of all its targets, shape (n,), m.
+        misses: Of all its targets, shape (n,), m, or by what else they are ordered.
     """
     counts = np.ones(len(misses), dtype=bool)
     for number, surface in enumerate(task.surfaces):

@@ -6,6 +6,7 @@ Only this module may say that a target is reached or that a shape respects the l
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,6 +18,8 @@ from synth.synthesis.check.clearances import Clearances, chosen_joints
 from synth.synthesis.check.covering import Between, Covering, counted, coverings
 from synth.synthesis.check.violations import Violation, violations
 from synth.task import Task
+
+_ALIKE = 0.1  # of the tolerance: misses that differ by less are alike
 
 
 @frozen_value
@@ -112,3 +115,37 @@ def verify(task: Task, arm: Arm, joints: FloatArray | None = None, *, keep: bool
         coverings=covered,
         reaches_all=bool(within[of_its_own].all()) and all(each.met for each in covered),
     )
+
+
+def what_counts(task: Task, arm: Arm, check: Verification) -> tuple[Task, Verification]:
+    """Return a task of what counts where a part of a surface may be left, and what a shape does there.
+
+    Of samples that are missed alike those count whose joint angles are farthest from their limits.
+
+    Args:
+        task: The task.
+        arm: The robot in the shape.
+        check: What it does for the task.
+    """
+    if not task.is_partial:
+        return task, check
+    limits = arm.robot.joint_limits
+    spare = [
+        np.minimum(angle - limit.lower, limit.upper - angle)
+        for angle, limit in zip(check.joints.T, (limits.base, limits.second), strict=True)
+    ]
+    missed = np.where(check.within_tolerance, check.misses, check.misses + task.tolerances)
+    steps = np.floor(missed / (_ALIKE * task.tolerances))
+    chosen = np.flatnonzero(counted(task, steps + 1.0 / (1.0 + np.maximum(np.min(spare, axis=0), 0.0))))
+    part = replace(
+        check,
+        joints=frozen(check.joints[chosen]),
+        reached=frozen(check.reached[chosen]),
+        misses=frozen(check.misses[chosen]),
+        within_tolerance=tuple(check.within_tolerance[index] for index in chosen.tolist()),
+        gamma_residuals=frozen(check.gamma_residuals[chosen]),
+        astray=frozen(check.astray[chosen]),
+        clearances=frozen(check.clearances[chosen]),
+    )
+    table = replace(task.table.take(chosen), samples=None)
+    return replace(task, targets=table, surfaces=()), part

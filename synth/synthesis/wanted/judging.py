@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.check import verify
+from synth.synthesis.check import verify, what_counts
 from synth.synthesis.wanted.figures import Figures
 from synth.synthesis.wanted.forgiveness import hand_forgiveness
 from synth.synthesis.wanted.margins import Margins
@@ -38,18 +38,23 @@ def judged(task: Task, design: Design, is_up: Callable[[], bool] = never) -> Des
     if design.figures is not None:
         return design
     ways: tuple[Motion, ...] = ()
-    if len(task.targets) <= MOST_MOTIONS and (design.verification.found or not is_up()):
+    if (
+        len(task.targets) <= MOST_MOTIONS
+        and not task.is_partial
+        and (design.verification.found or not is_up())
+    ):
         ways, joints = routed(task, design, is_up)
         if not np.array_equal(joints, design.verification.joints):
             design = replace(design, verification=verify(task, design.arm, joints, keep=True))
-    arm, check = design.arm, design.verification
+    arm = design.arm
+    counting, check = what_counts(task, arm, design.verification)
     margins = Margins.of(arm, check.joints, check.clearances)
     swings = [float(np.ptp(way.joints, axis=0).max()) for way in ways if way.found]
     figures = Figures(
         ways_missing=sum(not way.found for way in ways),
         margins=margins,
         shortfall=margins.shortfall(Margins.wanted(task.robot)),
-        forgiveness=hand_forgiveness(task, arm, check.joints),
+        forgiveness=hand_forgiveness(counting, arm, check.joints),
         largest_swing=max(swings, default=0.0),
         travel=sum((way.travel for way in ways), 0.0),
         bend=arm.shape.bending_energy,
@@ -73,8 +78,11 @@ def ways_and_forgiveness(task: Task, design: Design) -> tuple[tuple[Motion, ...]
     check, figures = design.verification, design.figures
     if not check.found:
         return (), None
-    ways = motions(task, design) if len(task.targets) <= MOST_MOTIONS else ()
-    return ways, figures.forgiveness if figures else hand_forgiveness(task, design.arm, check.joints)
+    ways = motions(task, design) if len(task.targets) <= MOST_MOTIONS and not task.is_partial else ()
+    if figures:
+        return ways, figures.forgiveness
+    counting, check = what_counts(task, design.arm, check)
+    return ways, hand_forgiveness(counting, design.arm, check.joints)
 
 
 def _change(shape: LinkShape, present: LinkShape) -> float:
