@@ -103,7 +103,11 @@ def test_a_shape_that_the_link_takes_is_within_all_bounds_of_the_program(rigid):
     _, functions, bounds = program_of(task)
     values = values_of(task, arm)
     floor, steepest = 0.0, 0.0
-    parameters = np.concatenate([task.positions_in_base.T.ravel(), WEIGHTS, [floor, steepest]])
+    none = [
+        np.zeros(3 * len(WEIGHTS)),
+        np.full(len(WEIGHTS), -1.0),
+    ]  # directions of arrival and their cosines
+    parameters = np.concatenate([task.positions_in_base.T.ravel(), WEIGHTS, [floor, steepest], *none])
     objective, constraints = (part.full().ravel() for part in functions(values, parameters))
     for given, kind in ((values, "x"), (constraints, "g")):
         assert (given >= bounds[f"lb{kind}"] - 1e-10).all()

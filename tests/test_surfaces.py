@@ -90,15 +90,14 @@ def test_a_scan_with_outliers_is_found_to_its_noise_and_the_answer_holds_for_poi
     assert len(covering.uncovered) == round((1.0 - covering.share) * 400)
     assert "80 % is asked" in covering.sentence
     whole = tuple(replace(surface, coverage=1.0) for surface in task.surfaces)
-    everything = replace(task, surfaces=whole, targets=sampled(whole))
-    assert not verify(everything, solution.robot).found
+    assert not verify(replace(task, surfaces=whole, targets=sampled(whole)), solution.robot).found
 
 
 def test_the_share_of_a_torus_agrees_with_ten_times_the_samples():
     task = as_torus(1)
     solution = solve(task, alternatives=0)
-    (covering,), (between,) = solution.best.verification.coverings, solution.best.verification.between
-    (surface,) = task.surfaces
+    check, (surface,) = solution.best.verification, task.surfaces
+    (covering,), (between,) = check.coverings, check.between
     cells = surface.cells(10 * len(surface.samples))
     finer = replace(surface, shape=Scan(cells.points, cells.areas), position=np.zeros(3), rpy=np.zeros(3))
     counted_again = verify(as_task("finer", finer), solution.robot).coverings[0]
@@ -242,10 +241,10 @@ def test_without_trimesh_a_mesh_is_refused_with_what_to_install(tmp_path, monkey
 def test_what_may_be_left_of_a_surface_has_no_say_in_how_precisely_a_hand_must_work():
     surface = {"sphere": {"center": [0, 0, 58], "radius": 500}, "coverage": 0.2, "tolerance": 20}
     solution = solve(parse_task({**TASK, "surface": surface}), alternatives=0)
-    counting, check = what_counts(solution.task, solution.robot, solution.best.verification)
-    guide = make_guide(solution.task, solution.best)
     assert solution.found
+    counting, check = what_counts(solution.task, solution.robot, solution.best.verification)
     assert 0.2 <= counting.weights.sum() / solution.task.weights.sum() < 0.21
     assert all(check.within_tolerance)
+    guide = make_guide(solution.task, solution.best)
     assert guide.tolerance.position > 1e-3
     assert guide.forgiveness.expected_worst_miss < 0.1

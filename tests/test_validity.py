@@ -95,8 +95,8 @@ def _gap(task, body, joints):
     for obstacle in task.obstacles:
         gaps.append(obstacle.solid.distance(tube).min() - body.tube_radius)
         gaps.append(obstacle.solid.distance(rod).min() - body.rod_radius)
-    if task.floor is not None:
-        gaps.append(body.arm.base.to_base(rod)[:, 2].min() - body.rod_radius - task.floor)
+    if task.floor_in_base is not None:
+        gaps.append(body.arm.base.to_base(rod)[:, 2].min() - body.rod_radius - task.floor_in_base)
     return min(gaps)
 
 
@@ -105,7 +105,7 @@ def test_clear_postures_are_clear_by_samples_and_the_others_are_not(scene):
     task, arm, _ = planted_with_obstacles(scene, 2)
     joints = random_joints(arm, 400, 1)
     solids = [obstacle.solid for obstacle in task.obstacles]
-    clear = keeps_clear(arm, joints, solids, floor=task.floor)
+    clear = keeps_clear(arm, joints, solids, floor=task.floor_in_base)
     assert 0 < clear.sum() < len(clear)
     body = ArmBody(arm)
     gaps = np.array([_gap(task, body, each) for each in joints])
@@ -146,7 +146,9 @@ def test_a_solution_asks_with_all_that_its_task_names():
     assert solution.clear(joints).shape == (len(joints),)
     wall = [obstacle.solid for obstacle in task.obstacles]
     grid = random_joints(arm, 300)
-    np.testing.assert_array_equal(solution.clear(grid), keeps_clear(arm, grid, wall, floor=task.floor))
+    np.testing.assert_array_equal(
+        solution.clear(grid), keeps_clear(arm, grid, wall, floor=task.floor_in_base)
+    )
 
 
 def test_a_preset_is_loaded_by_its_name_and_cannot_be_changed():

@@ -132,16 +132,18 @@ class Run:
                     seen, design = verified_in_time(self.task, one.arm, self.watch)
                     whole = WholeTask(seen, (design,) if design.verification.possible else ())
         task, designs = whole.task, whole.designs
-        status, reasons = self._ended(whole)
+        status, reasons = Status.FAILED, tuple[str, ...]()
+        with self.kept():
+            status, reasons = self._verdict(whole)
         words = status.sentence
         with self.kept():
-            words = message(task, status, designs, reasons)
+            words = message(task, status, designs, (*self._why_broken(), *reasons))
         no_time = note_on_ways(designs, interrupted=self.watch.interrupted)
         return Solution(
             replace(task, places=self.places),
             status,
             words,
-            reasons,
+            (*self._why_broken(), *reasons),
             self.seed,
             designs,
             self.search.starts,
@@ -151,13 +153,8 @@ class Run:
             breakdown="".join(traceback.format_exception(self.broke_off)) if self.broke_off else "",
         )
 
-    def _ended(self, whole: WholeTask) -> tuple[Status, tuple[str, ...]]:
-        status, reasons = Status.FAILED, tuple[str, ...]()
-        with self.kept():
-            status, reasons = self._verdict(whole)
-        if self.broke_off is None:
-            return status, reasons
-        return status, (f"the search broke off: {in_a_line(self.broke_off)}", *reasons)
+    def _why_broken(self) -> tuple[str, ...]:
+        return () if self.broke_off is None else (f"the search broke off: {in_a_line(self.broke_off)}",)
 
     def _whole(self, designs: tuple[Design, ...]) -> WholeTask:
         """Return designs for a part of the targets as designs for all."""
