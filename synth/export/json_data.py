@@ -17,7 +17,13 @@ def plain(content: Mapping[str, object]) -> dict[str, Any]:
     return {str(key): _plain(item) for key, item in content.items()}
 
 
+class Plain(list[object]):
+    """A list that JSON can hold as it is: of a million targets nobody looks at each number again."""
+
+
 def _plain(value: object) -> object:
+    if isinstance(value, Plain):
+        return value
     if is_dataclass(value) and not isinstance(value, type):
         value = asdict(value)
     if isinstance(value, dict):

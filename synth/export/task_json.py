@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.export.json_data import Plain
 from synth.geometry import Box
 from synth.task import Floor
 
@@ -31,7 +32,7 @@ def task_to_json(task: Task) -> dict[str, object]:
         "floor_at_base": isinstance(task.floor, Floor),
         "topology": task.topology.value,
         "objective": task.objective.value,
-        "targets": [
+        "targets": Plain(
             {"name": name, "position": position, "tolerance": tolerance, "weight": weight} | approach
             for name, position, tolerance, weight, approach in zip(
                 table.names,
@@ -41,8 +42,7 @@ def task_to_json(task: Task) -> dict[str, object]:
                 _approaches(table),
                 strict=True,
             )
-        ],
-        "surfaces": _surfaces(task),
+        ),
         "obstacles": [_obstacle(obstacle) for obstacle in task.obstacles],
         "current": None if task.current is None else {"arcs": arcs_to_json(task.current)},
     }
