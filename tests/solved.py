@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+from oracle_kinematics import rotation as turn_by
 from planted import planted_task
 
 from synth.task import PointTarget
@@ -31,26 +32,17 @@ def independent_misses(solution):
         for (kx, ky), length in zip(arm.shape.curvatures, arm.shape.lengths, strict=True):
             for _ in range(2000):  # Euler's method about the middle of each step
                 step = length / 2000
-                half = rotation @ _turn(np.array([-ky, kx, 0.0]) * step / 2)
+                half = rotation @ turn_by(np.array([-ky, kx, 0.0]) * step / 2)
                 p = p + half[:, 2] * step
-                rotation = rotation @ _turn(np.array([-ky, kx, 0.0]) * step)
+                rotation = rotation @ turn_by(np.array([-ky, kx, 0.0]) * step)
         u, t = rotation[:, 0], rotation[:, 2]
         s34, s35, s45 = arm.robot.d34**2, arm.d35**2, arm.d45**2
         along = (s35 - s45 + s34) / (2.0 * arm.robot.d34)
         centre = p - arm.robot.tip_offset * u + along * u
         theta1, theta2 = target.joints
         on_circle = centre + np.sqrt(s35 - along**2) * (-np.cos(theta2) * t - np.sin(theta2) * np.cross(u, t))
-        turned = _turn(np.array([0.0, 0.0, theta1])) @ on_circle
+        turned = turn_by(np.array([0.0, 0.0, theta1])) @ on_circle
         base = solution.task.base
-        reached = _turn(np.array([0.0, 0.0, base.yaw])) @ turned + base.position
+        reached = turn_by(np.array([0.0, 0.0, base.yaw])) @ turned + base.position
         misses.append(np.linalg.norm(reached - target.position))
     return np.array(misses)
-
-
-def _turn(vector):
-    angle = np.linalg.norm(vector)
-    if angle == 0.0:
-        return np.eye(3)
-    x, y, z = vector / angle
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross

@@ -15,7 +15,7 @@ from synth.export import solution_to_json
 from synth.geometry import Box, roll_pitch_yaw, rotation_of
 from synth.guide import make_guide
 from synth.robot import BaseChoices, BasePose, BaseRange, Interval, Workspace
-from synth.synthesis import Status
+from synth.synthesis import Status, blocking
 from synth.synthesis.shapes import Shapes
 from synth.synthesis.starts import refine, start_points
 from synth.synthesis.starts.screening import shapes_at_places
@@ -217,3 +217,20 @@ def test_the_box_of_a_leaning_workspace_holds_it():
     middle = ROBOT.joint_limits.second.middle
     x, y, z = arm.base.to_base(arm.forward_kinematics(0.0, middle))
     assert (rho, height) == pytest.approx((np.hypot(x, y), z))
+
+
+def test_what_blocks_a_task_is_asked_where_its_base_stands(monkeypatch):
+    asked = []
+
+    def seen(task, *_, **__):
+        asked.append(task)
+        return replace(solution, designs=())
+
+    task = noisy(0, places=BaseRange(Interval(0.0, 0.1)))
+    solution = synth.solve(task, time_limit=5.0)
+    assert "by algebra" not in solution.message
+    monkeypatch.setattr(blocking, "follow", seen)
+    explained = synth.explain(solution)
+    assert all(each.places is None for each in asked)
+    assert explained.task == solution.task
+    assert explained.task.places == task.places

@@ -5,28 +5,18 @@ from multiprocessing import get_context
 from pathlib import Path
 
 import pytest
-from planted import out_of_reach, planted_task
+from planted import out_of_reach
+from swept_tasks import QUICK, TASKS, same_answers, solved_alone
 
 from synth.errors import InputError, SynthError
 from synth.sweep import solve_many
 from synth.sweep import solve_many as sweep_module
 from synth.synthesis import Status, solve
 
-TASKS = [planted_task(seed, 3)[0] for seed in (5, 6, 8)]
 ROOT = Path(__file__).parents[1]
-QUICK = {"alternatives": 0}
 
 
-@pytest.fixture(scope="module")
-def alone():
-    return [solve(task, **QUICK) for task in TASKS]
-
-
-def same_answers(outcomes, solutions):
-    return all(
-        one.solution.designs == other.designs and one.solution.status is other.status
-        for one, other in zip(outcomes, solutions, strict=True)
-    )
+alone = pytest.fixture(scope="module")(solved_alone)
 
 
 def test_the_outcomes_are_those_of_solve_in_the_order_of_the_tasks(alone):

@@ -12,28 +12,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 from planted import planted_task
+from swept_tasks import QUICK, TASKS, same_answers, solved_alone
 
 from synth.errors import SynthError
 from synth.sweep import solve_many
 from synth.sweep import solve_many as sweep_module
 from synth.sweep.store import Store, key_of
-from synth.synthesis import solve
 
-TASKS = [planted_task(seed, 3)[0] for seed in (5, 6, 8)]
 ROOT = Path(__file__).parents[1]
-QUICK = {"alternatives": 0}
 
 
-@pytest.fixture(scope="module")
-def alone():
-    return [solve(task, **QUICK) for task in TASKS]
-
-
-def same_answers(outcomes, solutions):
-    return all(
-        one.solution.designs == other.designs and one.solution.status is other.status
-        for one, other in zip(outcomes, solutions, strict=True)
-    )
+alone = pytest.fixture(scope="module")(solved_alone)
 
 
 def count_solves(monkeypatch):

@@ -65,6 +65,9 @@ def explain(
     refuse_unless("solution", solution, Solution)
     if solution.found:
         return solution
+    task, places = solution.task, solution.task.places
+    # Of a base that is free it is asked what blocks the task where it stands; `_base_moved` looks elsewhere.
+    solution = replace(solution, task=task.standing_at(task.base))
     # What is begun is still verified when the time is up, which takes as long as it took before.
     watch = Watch(max(time_limit - solution.time.verifying, 0.0), stop=stop, report=progress)
     found, limits = [], tuple(limits_of(solution.task))
@@ -75,7 +78,8 @@ def explain(
             break
         release = _released(limit, solution, watch)
         if release is not None and release.share < _NOTHING:
-            return follow(solution.task, [release.design], seed=solution.seed, watch=watch.aside())
+            met = follow(solution.task, [release.design], seed=solution.seed, watch=watch.aside())
+            return replace(met, task=replace(met.task, places=places))
         if release is not None:
             found.append(release)
         if not watch.is_up():
@@ -88,7 +92,8 @@ def explain(
     notes = [] if releases or watch.is_up() else [_why_none_does(solution, watch)]
     if watch.interrupted:
         notes = [_how_far(looked_at, [limit.name for limit in limits])]
-    return replace(solution, releases=releases, notes=(*solution.notes, *notes), explained=True)
+    notes = [*solution.notes, *notes]
+    return replace(solution, task=task, releases=releases, notes=tuple(notes), explained=True)
 
 
 def _how_far(looked_at: Sequence[str], names: Sequence[str]) -> str:

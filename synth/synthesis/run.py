@@ -181,7 +181,8 @@ class Run:
             return Status.FAILED, tuple(self.search.polishing.breakdowns[:1])
         cut_short = self.watch.interrupted and not self.complete
         status = Status.LIMIT if cut_short or whole.unseen else Status.BEST_EFFORT
-        return status, why_no_better(self.task, designs, self.search.polishing.blocked)
+        asked = replace(self.task, places=self.places)
+        return status, why_no_better(asked, designs, self.search.polishing.blocked)
 
 
 def bound_of_all(bound: Bound | None, task: Task, designs: tuple[Design, ...]) -> Bound | None:

@@ -40,7 +40,8 @@ def solve(
         seed: Seed of the search.
         warm_start: The solution of a task nearby, of the same robot: targets a few millimetres or
             centimetres away. If one of its two best shapes, polished for this task, reaches every target
-            it is returned, with no other shapes beside it. If not, the whole search follows.
+            it is returned, with no other shapes beside it. If not, the whole search follows. Where the
+            base is free it is not used.
         alternatives: How many other shapes are looked for once one reaches every target: those that a person
             would want, which see `ranking`; where there are none, so many other start points are polished.
             Where no shape reaches every target, at most two are polished that promise nothing better than the
@@ -69,16 +70,14 @@ def solve(
     )
     if task.places is not None:
         run = placed(task, seed, watch, alternatives)
-        if prove:
-            with run.kept():
-                run.prove()
-        return run.solution()
-    run = Run(task, part_of(task, seed, watch), seed, watch, alternatives)
-    near = warm_start.designs if warm_start is not None and warm_start.task.robot == task.robot else ()
-    with run.kept(), watch.keeping_back(run.kept_back):
-        if not run.search.follow(near):
-            run.search.run()
-        if prove:
+    else:
+        run = Run(task, part_of(task, seed, watch), seed, watch, alternatives)
+        near = warm_start.designs if warm_start is not None and warm_start.task.robot == task.robot else ()
+        with run.kept(), watch.keeping_back(run.kept_back):
+            if not run.search.follow(near):
+                run.search.run()
+    if prove and run.broke_off is None:
+        with run.kept(), watch.keeping_back(run.kept_back):
             run.prove()
     return run.solution()
 

@@ -43,15 +43,17 @@ def pointing_astray(
     return np.asarray(np.arctan2(apart, np.einsum("...i,...i", pointing, wanted)))
 
 
-def beyond_direction(
+def points_elsewhere(
     task: Task, arm: Arm, joints: FloatArray, chosen: NDArray[np.intp] | slice = slice(None)
-) -> FloatArray:
-    """Return by how much more than allowed the rigid link points elsewhere, shape (..., n), rad; 0 if it may.
+) -> NDArray[np.bool_]:
+    """Return whether the rigid link points farther beside the direction asked for than it may.
 
     Args: as for `pointing_astray`.
+
+    Returns:
+        Whether, shape (..., n); not where no direction is asked for.
     """
     rows = task.table.approaches
     if rows is None:
-        return np.zeros(joints.shape[:-1])
-    beyond = pointing_astray(task, arm, joints, chosen) - rows[chosen, 3]
-    return np.where(beyond > ANGLE_SLACK, beyond, 0.0)
+        return np.zeros(joints.shape[:-1], dtype=np.bool_)
+    return np.asarray(pointing_astray(task, arm, joints, chosen) > rows[chosen, 3] + ANGLE_SLACK)

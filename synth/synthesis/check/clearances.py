@@ -12,7 +12,7 @@ import numpy as np
 
 from synth.arrays import frozen_value
 from synth.robot import Arm, ArmBody, clear_of_obstacles, clear_of_tube, tube_clear_of_itself
-from synth.synthesis.check.approaches import beyond_direction
+from synth.synthesis.check.approaches import points_elsewhere
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -47,7 +47,7 @@ def chosen_joints(
     targets = task.table.positions
     closest, _ = arm.closest_joints(targets)
     candidates = np.stack([closest] if given is None else [closest, given])
-    elsewhere = _LAST * (beyond_direction(task, arm, candidates) > 0.0)
+    elsewhere = _LAST * points_elsewhere(task, arm, candidates)
     misses = _misses(task, arm, candidates, targets) + elsewhere
     if given is not None and keep:
         misses[1][misses[1] <= task.tolerances] = -1.0  # before all others
@@ -59,7 +59,7 @@ def chosen_joints(
         branches = arm.inverse_kinematics(targets[stuck])
         others = np.moveaxis(branches.joints, -2, 0)
         off = _misses(task, arm, others, targets[stuck])
-        off += _LAST * (beyond_direction(task, arm, others, stuck) > 0.0)
+        off += _LAST * points_elsewhere(task, arm, others, stuck)
         off[np.isinf(branches.miss.T)] = np.inf  # beyond the joint limits, or no branch at all
         candidates, misses = (
             np.concatenate(pair) for pair in ((candidates[:, stuck], others), (misses[:, stuck], off))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import FloatArray, frozen, frozen_value
-from synth.synthesis.check.approaches import beyond_direction
+from synth.synthesis.check.approaches import points_elsewhere
 from synth.synthesis.check.clearances import clear_of_everything
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def joints_reaching(
     other &= branches.miss <= task.tolerances[chosen, None]
     other &= np.array(check.within_tolerance)[chosen, None]
     every_branch = np.moveaxis(branches.joints, -2, 0)
-    other &= beyond_direction(task, arm, every_branch, chosen).T == 0.0
+    other &= ~points_elsewhere(task, arm, every_branch, chosen).T
     other[other] = clear_of_everything(task, arm, branches.joints[other])
     return [np.vstack([joints, branches.joints[index][other[index]]]) for index, joints in enumerate(best)]
 

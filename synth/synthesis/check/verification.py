@@ -13,7 +13,7 @@ import numpy as np
 from synth.arrays import FloatArray, frozen, frozen_value
 from synth.checks import refuse_unless
 from synth.robot import Arm
-from synth.synthesis.check.approaches import beyond_direction, pointing_astray
+from synth.synthesis.check.approaches import pointing_astray, points_elsewhere
 from synth.synthesis.check.clearances import Clearances, chosen_joints
 from synth.synthesis.check.covering import Between, Covering, counted, coverings
 from synth.synthesis.check.violations import Violation, violations
@@ -93,7 +93,7 @@ def verify(task: Task, arm: Arm, joints: FloatArray | None = None, *, keep: bool
     reached = arm.forward_kinematics(chosen[:, 0], chosen[:, 1])
     blocked = sunk | ~room.clear
     misses = np.linalg.norm(reached - task.table.positions, axis=-1)
-    within = (misses <= task.tolerances) & ~blocked & (beyond_direction(task, arm, chosen) == 0.0)
+    within = (misses <= task.tolerances) & ~blocked & ~points_elsewhere(task, arm, chosen)
     if task.is_partial:  # what stands at targets that may be left breaks no limit
         counts = counted(task, np.where(within, misses, misses + task.tolerances))
         broken = violations(

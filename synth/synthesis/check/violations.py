@@ -10,14 +10,13 @@ import numpy as np
 
 from synth.robot import Arm, ArmBody
 from synth.rounding import Unit, rounded_up, told_apart
+from synth.synthesis.check.approaches import ANGLE_SLACK
 from synth.synthesis.check.clearances import LENGTH_SLACK, Clearances
 from synth.task import Task, Topology
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.robot import Interval
-
-_ANGLE_SLACK = 1e-6  # what rounding may do, rad
 
 
 @dataclass(frozen=True)
@@ -81,7 +80,7 @@ def _base_violations(task: Task, arm: Arm) -> list[Violation]:
             f"the arm stands {1e3 * moved:.4g} mm from where the task puts it",
         ),
         *_exceeds(
-            "base: turn", turned, 0.0, _ANGLE_SLACK,
+            "base: turn", turned, 0.0, ANGLE_SLACK,
             f"the arm stands turned by {math.degrees(turned):.4g} deg from how the task puts it",
         ),
     ]  # fmt: skip
@@ -120,7 +119,7 @@ def _bend_violations(arm: Arm) -> list[Violation]:
                 *told_apart(shape.min_bend_radius, link.min_bend_radius)),
         ),
         *_exceeds(
-            "max_total_bend", shape.total_bend, link.max_total_bend, _ANGLE_SLACK,
+            "max_total_bend", shape.total_bend, link.max_total_bend, ANGLE_SLACK,
             "the link would have to bend by {} deg in all; {} deg is its limit".format(
                 *told_apart(shape.total_bend, link.max_total_bend, Unit.DEG)),
         ),
@@ -136,7 +135,7 @@ def _joint_violations(arm: Arm, joints: FloatArray) -> list[Violation]:
     ):
         worst = _outside(interval, angles)
         violations += _exceeds(
-            name, worst, 0.0, _ANGLE_SLACK,
+            name, worst, 0.0, ANGLE_SLACK,
             f"the {name} would have to turn {rounded_up(worst, Unit.DEG, 2)} deg beyond its limit",
         )  # fmt: skip
     return violations
@@ -171,7 +170,7 @@ def _topology_violations(task: Task, arm: Arm) -> list[Violation]:
         case Topology.PUMA:
             amount, slack = off.puma, LENGTH_SLACK
         case Topology.SCARA:
-            amount, slack = off.scara, _ANGLE_SLACK
+            amount, slack = off.scara, ANGLE_SLACK
         case Topology.GENERAL:
             amount, slack = float(arm.category.value != "general"), 0.0
         case Topology.ANY:

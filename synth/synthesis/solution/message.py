@@ -94,21 +94,11 @@ def why_no_better(task: Task, designs: Sequence[Design], blocked: Sequence[Desig
 def _what_misses(task: Task, design: Design) -> list[str]:
     """Return a sentence for each target that is not reached, the worst first, three at most."""
     check = design.verification
-    of_surfaces = [covering.sentence for covering in check.coverings if not covering.met]
+    of_surfaces = [each.sentence for each in check.coverings if not each.met]
     of_surfaces += [each.sentence for each in check.between if not each.met]
-    if task.surfaces:
-        own = np.flatnonzero(task.surface_of_targets < 0)
-        missed = [index for index in own.tolist() if not check.within_tolerance[index]]
-        return [
-            *of_surfaces,
-            *(
-                f"{task.table.names[i]} misses by {rounded_up(check.misses[i], digits=2)} mm"
-                for i in missed[:3]
-            ),
-        ]
     order = np.argsort(-check.misses / task.tolerances)
-    order = order[~np.array(check.within_tolerance)[order]]
-    sentences = [_how_missed(task, check, index) for index in order[:3].tolist()]
+    order = order[~np.array(check.within_tolerance)[order] & (task.surface_of_targets[order] < 0)]
+    sentences = [*of_surfaces, *(_how_missed(task, check, index) for index in order[:3].tolist())]
     return sentences if len(order) <= 3 else [*sentences, f"and {len(order) - 3} more"]
 
 
@@ -123,7 +113,7 @@ def _how_missed(task: Task, check: Verification, index: int) -> str:
 
 def _why_not_exact(task: Task) -> tuple[str, ...]:
     """Return a sentence if algebra knows of no arm at all that meets the targets exactly."""
-    if exact_arms(task) != ():
+    if task.places is not None or exact_arms(task) != ():
         return ()
     count = len(task.targets)
     return (f"no arm with this rigid link passes exactly through such {count} targets, by algebra",)

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.robot import BaseRange
 from synth.synthesis.shapes import Shapes, category_offsets
 from synth.synthesis.starts.refined import relative_weights
 from synth.task import Floor
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
-    from synth.robot import BaseRange, Robot
+    from synth.robot import Robot
     from synth.task import Task
 
 _SHAPES = 20_000
@@ -29,6 +30,13 @@ def shapes_at_random(robot: Robot, floor: float | None, seed: int) -> Shapes:
     """
     shapes = Shapes.sample(robot, _SHAPES, np.random.default_rng([seed, 0]))
     return shapes if floor is None else shapes.take(shapes.end[1][:, 2] > floor)
+
+
+def shapes_for(task: Task, seed: int) -> Shapes:
+    """Return random shapes for a task, each at a random place of the base where that is free."""
+    if isinstance(task.places, BaseRange):
+        return shapes_at_places(task, task.places, seed)
+    return shapes_at_random(task.robot, task.floor_in_base, seed)
 
 
 def shapes_at_places(task: Task, places: BaseRange, seed: int) -> Shapes:

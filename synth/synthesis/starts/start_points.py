@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import frozen_value
-from synth.robot import BaseRange
 from synth.synthesis.starts.exact_arms import exact_arms, nearest_to_exact_arms
 from synth.synthesis.starts.refined import relative_weights
-from synth.synthesis.starts.screening import screened, shapes_at_places, shapes_at_random
+from synth.synthesis.starts.screening import screened, shapes_for
 from synth.synthesis.starts.thinning import thinned
 from synth.synthesis.starts.turned_arms import as_it_is_and_turned
 from synth.synthesis.starts.valleys import Valleys
@@ -99,10 +98,7 @@ def start_points(
 
 def _starts(task: Task, seed: int, rng: np.random.Generator, watch: Watch, *, quick: bool) -> Iterator[Start]:
     """Yield start points for a task of few targets, each step with more effort than the one before."""
-    if isinstance(task.places, BaseRange):
-        shapes = shapes_at_places(task, task.places, seed)
-    else:
-        shapes = shapes_at_random(task.robot, task.floor_in_base, seed)
+    shapes = shapes_for(task, seed)
     if not len(shapes.length):
         return
     cost = screened(task, shapes)

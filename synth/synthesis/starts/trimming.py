@@ -13,11 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.robot import BaseRange
 from synth.synthesis.check import counted, verify
 from synth.synthesis.starts.refined import Trimmed
 from synth.synthesis.starts.refinement import refine
-from synth.synthesis.starts.screening import estimated_misses, shapes_at_places, shapes_at_random
+from synth.synthesis.starts.screening import estimated_misses, shapes_for
 from synth.synthesis.starts.turned_arms import SAMPLE, as_it_is_and_turned, random_part
 from synth.task import Objective
 
@@ -85,10 +84,7 @@ def _above_floor(task: Task) -> Task:
 
 def _promising(task: Task, seed: int) -> Shapes:
     """Return random shapes that come near enough of the samples."""
-    if isinstance(task.places, BaseRange):
-        shapes = shapes_at_places(task, task.places, seed)
-    else:
-        shapes = shapes_at_random(task.robot, task.floor_in_base, seed)
+    shapes = shapes_for(task, seed)
     if not len(shapes.length):
         return shapes
     rng = np.random.default_rng([seed, 11])
