@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from planted import noisy, out_of_reach, planted_task
 from planted_obstacles import planted_with_obstacles
+from planted_surfaces import as_points
 from solutions import solution_document
 
 import synth
@@ -45,6 +46,7 @@ MAKERS = {
     "released": _blocked,
     "stopped": lambda: solve(noisy(3), stop=lambda: True),
     "no shape": lambda: replace(made("found"), designs=(), status=Status.FAILED, breakdown="Traceback"),
+    "scan": lambda: solve(as_points(0, 60)[0], alternatives=0),
     "many targets": lambda: solve(noisy(2, 60), time_limit=4.0, alternatives=0),
 }
 

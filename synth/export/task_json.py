@@ -43,6 +43,7 @@ def task_to_json(task: Task) -> dict[str, object]:
                 strict=True,
             )
         ),
+        "surfaces": _surfaces(task),
         "obstacles": [_obstacle(obstacle) for obstacle in task.obstacles],
         "current": None if task.current is None else {"arcs": arcs_to_json(task.current)},
     }

@@ -105,9 +105,15 @@ def _surfaces(read: Sequence[SurfacePart], table: TargetTable | None) -> tuple[S
         return ()
     parts = [(each, slice(each.first, each.first + each.samples)) for each in read]
     return tuple(
-        Surface(each.name, Scan(table.positions[part], table.weights[part]), each.tolerance, each.coverage)
+        Surface(each.name, Scan(table.positions[part], _areas(table, part)), each.tolerance, each.coverage)
         for each, part in parts
     )
+
+
+def _areas(table: TargetTable, part: slice) -> FloatArray | None:
+    """Return what each of some samples stands for; None where they are alike, as those of a scan are."""
+    weights = table.weights[part]
+    return None if np.all(weights == 1.0) else weights
 
 
 def _as_samples(table: TargetTable, surfaces: Sequence[Surface]) -> TargetTable:
