@@ -2,9 +2,7 @@
 
 import io
 import json
-import os
 import re
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -31,17 +29,6 @@ def written(path, task, **keys):
     extra = "".join(f"{key}: {value}\n" for key, value in keys.items())
     path.write_text(f"{HEADER}{extra}targets: {json.dumps(targets)}\n")
     return path
-
-
-def noisy_content(count):
-    """A task without an exact answer, of which the least worst miss is asked."""
-    task, _ = planted_task(5, count)
-    noise = np.random.default_rng(0).normal(scale=0.03, size=(count, 3))
-    targets = [
-        {"position": (target.position + shift).tolist()}
-        for target, shift in zip(task.targets, noise, strict=True)
-    ]
-    return f"{HEADER}floor: null\nobjective: minimax\ntargets: {json.dumps(targets)}\n"
 
 
 @pytest.fixture
@@ -204,46 +191,6 @@ def test_an_output_directory_that_cannot_be_exits_with_2_before_the_search(easy,
     answer = program("solve", easy, "-o", tmp_path / "file" / "out")
     assert answer.returncode == 2
     assert "Traceback" not in answer.stderr
-
-
-def test_a_time_limit_keeps_the_best_so_far(tmp_path):
-    file = tmp_path / "noisy.yaml"
-    file.write_text(noisy_content(12))
-    # The time is up as soon as one start point is polished, on a fast machine and on a slow one.
-    late = (
-        "from synth.synthesis.search import Search\n"
-        "original = Search.polish\n"
-        "def polished(self, start):\n"
-        "    original(self, start)\n"
-        "    self._watch._began -= 1000.0\n"
-        "Search.polish = polished\n"
-    )
-    answer = program("solve", file, "--json", "--time-limit", "500", before=late)
-    solution = json.loads(answer.stdout)
-    assert answer.returncode == 1
-    assert (solution["status"], solution["starts"]) == ("limit", 1)
-    unlimited = json.loads(program("solve", file, "--json").stdout)
-    assert unlimited["status"] == "best_effort"
-    assert unlimited["starts"] > 1
-
-
-@pytest.mark.skipif(os.name == "nt", reason="Windows sends no SIGINT to one process")
-def test_ctrl_c_keeps_the_best_so_far(tmp_path):
-    # The command waits for what is written into a pipe: when it has read that, its search is about to begin.
-    pipe = tmp_path / "noisy.yaml"
-    os.mkfifo(pipe)
-    with subprocess.Popen(
-        [sys.executable, "-m", "synth", "solve", str(pipe), "--json"],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-    ) as process:  # fmt: skip
-        pipe.write_text(noisy_content(40))
-        process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=60)
-    assert "Traceback" not in err
-    assert "the best shape so far is kept" in err
-    solution = json.loads(out)
-    assert process.returncode == 1
-    assert solution["status"] == "limit"
 
 
 def test_the_module_and_the_command_are_the_same_program():

@@ -1,17 +1,74 @@
 """Ctrl-C and time limits: what was found so far is given, and files are whole."""
 
 import contextlib
+import json
 import os
 import signal
+import subprocess
+import sys
 
+import numpy as np
 import pytest
 from command import program
+from planted import planted_task
 from sessions import NAMES, ONE_TARGET, names, status
 
 from synth.cli.session import Session
 
 # Signals come exactly where they hurt, so that no test waits or hopes.
 SIGNAL = "import os, signal\ndef press(): os.kill(os.getpid(), signal.{signal})\n"
+
+
+def noisy_content(count):
+    """A task without an exact answer, of which the least worst miss is asked."""
+    task, _ = planted_task(5, count)
+    noise = np.random.default_rng(0).normal(scale=0.03, size=(count, 3))
+    targets = [
+        {"position": (target.position + shift).tolist()}
+        for target, shift in zip(task.targets, noise, strict=True)
+    ]
+    header = "synth: 1\nlength_unit: m\nrobot: malleable-2dof\nfloor: null\nobjective: minimax\n"
+    return f"{header}targets: {json.dumps(targets)}\n"
+
+
+def test_a_time_limit_keeps_the_best_so_far(tmp_path):
+    file = tmp_path / "noisy.yaml"
+    file.write_text(noisy_content(12))
+    # The time is up as soon as one start point is polished, on a fast machine and on a slow one.
+    late = (
+        "from synth.synthesis.search import Search\n"
+        "original = Search.polish\n"
+        "def polished(self, start):\n"
+        "    original(self, start)\n"
+        "    self._watch._began -= 1000.0\n"
+        "Search.polish = polished\n"
+    )
+    answer = program("solve", file, "--json", "--time-limit", "500", before=late)
+    solution = json.loads(answer.stdout)
+    assert answer.returncode == 1
+    assert (solution["status"], solution["starts"]) == ("limit", 1)
+    unlimited = json.loads(program("solve", file, "--json").stdout)
+    assert unlimited["status"] == "best_effort"
+    assert unlimited["starts"] > 1
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows sends no SIGINT to one process")
+def test_ctrl_c_keeps_the_best_so_far(tmp_path):
+    # The command waits for what is written into a pipe: when it has read that, its search is about to begin.
+    pipe = tmp_path / "noisy.yaml"
+    os.mkfifo(pipe)
+    with subprocess.Popen(
+        [sys.executable, "-m", "synth", "solve", str(pipe), "--json"],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    ) as process:  # fmt: skip
+        pipe.write_text(noisy_content(40))
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+    assert "Traceback" not in err
+    assert "the best shape so far is kept" in err
+    solution = json.loads(out)
+    assert process.returncode == 1
+    assert solution["status"] == "limit"
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows sends no such signal to one process")

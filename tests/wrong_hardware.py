@@ -98,12 +98,32 @@ WRONG_HARDWARE = {
         12,
         "the name of obstacles[0]",
     ),
-    # what a later version brings
+    # surfaces and paths
     "surface": (
         TASK + "surface: {sphere: {center: [0, 0, 0], radius: -1}}\n",
         "surface.sphere.radius",
         13,
         "must be greater than 0",
     ),
-    "path": (TASK + "path: {csv: a.csv}\n", "path", 13, "not supported targets"),
+    "path of no file": (TASK + "path: {csv: a.csv}\n", "path.csv", 13, "a.csv: there is no such file"),
+    "path of nothing": (TASK + "path: {}\n", "path", 13, "either waypoints or csv"),
+    "path of a number": (TASK + "path: 3\n", "path", 13, "must be a mapping (key: value) or a list of them"),
+    "path of one point": (
+        TASK + "path: {waypoints: [[500, 0, 300]]}\n",
+        "path.waypoints",
+        13,
+        "must be 2 at least, but there are 1",
+    ),
+    "path on the spot": (
+        TASK + "path: [{waypoints: [[500, 0, 300], [500, 0, 300]]}]\n",
+        "path[0].waypoints[1]",
+        13,
+        "is where waypoints[0] is",
+    ),
+    "path back and forth": (
+        TASK + "path: {waypoints: [[500, 0, 300], [500, 9, 300]], closed: true}\n",
+        "path.waypoints",
+        13,
+        "must be 3 at least, but there are 2",
+    ),
 }

@@ -10,7 +10,7 @@ import numpy as np
 
 from synth.checks import refuse_unless
 from synth.export.json_data import plain
-from synth.export.surface_json import surfaces_to_json
+from synth.export.surface_json import paths_to_json, surfaces_to_json
 from synth.export.task_json import arcs_to_json, task_to_json
 from synth.guide import MARKERS, make_guide
 from synth.synthesis import Bound, Solution, target_results, worst_targets
@@ -62,6 +62,7 @@ def solution_to_json(solution: Solution) -> dict[str, Any]:
         "targets_left_out": max(len(task.targets) - MOST_TARGETS, 0),
         "targets_unseen": designs[0].verification.unseen if designs else 0,
         "surfaces": surfaces_to_json(designs[0]) if designs else None,
+        "paths": paths_to_json(designs[0]) if designs else None,
         "ways": None if guide is None else [_way(motion) for motion in designs[0].ways or guide.ways],
         "figures": designs[0].figures if designs else None,
         "bound": _bound(solution.bound),

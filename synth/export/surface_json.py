@@ -1,4 +1,4 @@
-"""What a solution covers of surfaces, as plain data."""
+"""What a solution covers of surfaces, and how it follows paths, as plain data."""
 
 from __future__ import annotations
 
@@ -27,6 +27,27 @@ def surfaces_to_json(design: Design) -> list[object]:
             "between": _between(proven.get(each.name)),
         }
         for each in design.verification.coverings
+    ]
+
+
+def paths_to_json(design: Design) -> list[object]:
+    """Return how each path is followed: the joint angles along it, and how far P5 strays at most."""
+    return [
+        {
+            "name": each.name,
+            "followed": each.met,
+            "tolerance": each.tolerance,
+            "largest": each.largest,
+            "seen": each.seen,
+            "lengths": each.lengths,
+            "times": each.times if each.met else None,
+            "points": each.points,
+            "joints": each.joints,
+            "joint_speeds": each.joint_speeds,
+            "breaks": each.breaks,
+            "jump": each.jump,
+        }
+        for each in design.verification.followed
     ]
 
 

@@ -16,6 +16,7 @@ from synth.geometry import Box
 from synth.task import Floor
 
 if TYPE_CHECKING:
+    from synth.paths import Path
     from synth.robot import Interval, LinkShape, Robot
     from synth.task import Obstacle, TargetTable, Task
 
@@ -44,6 +45,7 @@ def task_to_json(task: Task) -> dict[str, object]:
             )
         ),
         "surfaces": _surfaces(task),
+        "paths": [_path(path) for path in task.paths],
         "obstacles": [_obstacle(obstacle) for obstacle in task.obstacles],
         "current": None if task.current is None else {"arcs": arcs_to_json(task.current)},
     }
@@ -74,6 +76,18 @@ def _surfaces(task: Task) -> list[object]:
         for number, surface in enumerate(task.surfaces)
         if (of == number).any()
     ]
+
+
+def _path(path: Path) -> dict[str, object]:
+    """Return a path whole; its samples are among the targets, after those of the surfaces."""
+    return {
+        "name": path.name,
+        "waypoints": path.waypoints,
+        "closed": path.closed,
+        "interpolation": path.interpolation.value,
+        "tolerance": path.tolerance,
+        "speed": path.speed,
+    }
 
 
 def arcs_to_json(shape: LinkShape) -> list[object]:

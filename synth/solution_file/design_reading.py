@@ -14,7 +14,15 @@ import numpy as np
 from synth.robot import Arm
 from synth.rounding import told_apart
 from synth.solution_file.task_reading import made, to_base, to_shape
-from synth.synthesis import Design, Figures, Forgiveness, Margins, Motion, verify, way_is_clear
+from synth.synthesis import (
+    Design,
+    Figures,
+    Forgiveness,
+    Margins,
+    Motion,
+    verify,
+    way_is_clear,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -98,7 +106,7 @@ def _ways(document: Document, path: KeyPath, task: Task, arm: Arm, ways: Sequenc
     motions = []
     for place, way in enumerate(ways):
         motion = Motion(way.start, way.end, np.array(way.joints).reshape(-1, 2))
-        if motion.found and not way_is_clear(task, arm, motion):
+        if motion.found and not way_is_clear(task, arm, motion.joints):
             document.report((*path, place), "is not clear of everything within the limits of the joints")
         motions.append(motion)
     return motions

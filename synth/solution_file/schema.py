@@ -28,6 +28,7 @@ from synth.solution_file.told_schema import (  # noqa: TC001 - as above
     BoundPart,
     CoveringPart,
     FiguresPart,
+    FollowedPart,
     GammaPart,
     GuidePart,
     InvariantsPart,
@@ -147,6 +148,7 @@ class SolutionFile(ShapePart):
     targets_left_out: int = Field(default=0, ge=0, description="of how many targets nothing is told")
     targets_unseen: int = Field(default=0, ge=0, description="how many targets there was no time to look at")
     surfaces: list[CoveringPart] | None = Field(default=None, description="what is covered of surfaces")
+    paths: list[FollowedPart] | None = Field(default=None, description="how paths are followed")
     bound: BoundPart | None = Field(default=None, description="what is proven of all shapes; null: nothing")
     explained: bool = Field(default=False, description="whether releases were looked for")
     releases: list[ReleasePart] = Field(default=[], description="what would release the task")

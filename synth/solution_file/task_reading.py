@@ -10,6 +10,7 @@ import numpy as np
 
 from synth.errors import InputError
 from synth.geometry import Box, Capsule, Sphere
+from synth.paths import Path
 from synth.robot import (
     BaseChoices,
     BasePose,
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
         ArcPart,
         BasePart,
         ObstaclePart,
+        PathPart,
         PlacesPart,
         ReleasedTaskPart,
         RobotPart,
@@ -77,17 +79,23 @@ def to_task(
     table = made(document, path, lambda: targets if read.targets is None else _targets(read.targets))
     given = table
     surfaces = made(document, (*path, "surfaces"), lambda: _surfaces(read.surfaces, given))
+    paths = [
+        made(document, (*path, "paths", index), lambda each=each: _path(each))  # type: ignore[misc]
+        for index, each in enumerate(read.paths)
+    ]
     base = made(document, (*path, "base"), lambda: to_base(read.base))
     if robot is None or base is None or table is None or surfaces is None or document.is_wrong:
         return None
+    followed = tuple(each for each in paths if each is not None)
     return made(
         document,
         path,
         lambda: Task(
             name=read.name,
             robot=robot,
-            targets=_as_samples(table, surfaces),
+            targets=_as_samples(table, surfaces, followed),
             surfaces=surfaces,
+            paths=followed,
             base=base,
             floor=Floor.AT_BASE if read.floor_at_base else read.floor,
             topology=read.topology,
@@ -116,9 +124,15 @@ def _areas(table: TargetTable, part: slice) -> FloatArray | None:
     return None if np.all(weights == 1.0) else weights
 
 
-def _as_samples(table: TargetTable, surfaces: Sequence[Surface]) -> TargetTable:
-    """Return targets the last of which are the samples of surfaces, in order."""
-    count = sum(len(surface.samples) for surface in surfaces)
+def _path(read: PathPart) -> Path:
+    return Path(
+        read.name, np.array(read.waypoints), read.closed, read.interpolation, read.tolerance, read.speed
+    )
+
+
+def _as_samples(table: TargetTable, surfaces: Sequence[Surface], paths: Sequence[Path]) -> TargetTable:
+    """Return targets the last of which are the samples of surfaces, then of paths, in order."""
+    count = sum(len(surface.samples) for surface in surfaces) + sum(len(path.samples) for path in paths)
     own = len(table) - count
     if not count or own < 0:
         return table

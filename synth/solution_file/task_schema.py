@@ -7,6 +7,7 @@ from typing import Annotated, TypeVar
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
 from synth.checks import LARGEST
+from synth.paths import Interpolation
 from synth.task import Objective, Pair, Topology
 
 
@@ -186,6 +187,19 @@ class SurfacePart(Part):
     samples: int = Field(ge=1, description="how many of them there are")
 
 
+class PathPart(Part):
+    """A path to be followed; its samples are among the targets, after those of the surfaces."""
+
+    name: str = Field(description="what the path is called")
+    waypoints: Annotated[list[Point], Field(min_length=2)] = Field(description="points that it passes, m")
+    closed: bool = Field(default=False, description="whether it goes back to its first waypoint")
+    interpolation: Annotated[Interpolation, Field(strict=False)] = Field(
+        default=Interpolation.STRAIGHT, description="what is between the waypoints"
+    )
+    tolerance: Positive = Field(description="how far the end effector may stray from it, m")
+    speed: Positive | None = Field(default=None, description="speed along it, m/s; null: all one")
+
+
 class ReleasedTaskPart(Part):
     """A task; one that was released may leave out its targets, which are then those of the task."""
 
@@ -203,6 +217,7 @@ class ReleasedTaskPart(Part):
     )
     targets: Some[TargetPart] | None = Field(default=None, description="the points to reach")
     surfaces: list[SurfacePart] = Field(default=[], description="surfaces of which targets are samples")
+    paths: list[PathPart] = Field(default=[], description="paths to be followed")
     obstacles: list[ObstaclePart] = Field(default=[], description="solids to keep clear of")
     current: CurrentPart | None = Field(default=None, description="the present shape of the link, or null")
 

@@ -158,6 +158,23 @@ class CoveringPart(Part):
     between: BetweenPart | None = Field(default=None, description="between the samples; null: not known")
 
 
+class FollowedPart(Part):
+    """How a path is followed."""
+
+    name: str = Field(description="what it is called")
+    followed: bool = Field(description="whether all of it is, within the tolerance and without a jump")
+    tolerance: Length = Field(description="how far the end effector may stray from it, m")
+    largest: Length | None = Field(description="it strays by no more, m; null: it is not followed")
+    seen: Length = Field(description="it strays by so much somewhere, m")
+    lengths: list[Length] = Field(description="how long the path is up to each of the joint angles, m")
+    times: list[Length] | None = Field(description="when each is passed at the speed asked for, s; or null")
+    points: list[Point] = Field(description="where the end effector should be at each, m")
+    joints: list[Joints] = Field(description="[theta1, theta2] along it, straight in between, rad")
+    joint_speeds: Joints | None = Field(description="largest speeds of the joints then, rad/s; or null")
+    breaks: list[Point] = Field(description="between which two points it is not followed, m; empty if it is")
+    jump: list[Joints] = Field(description="joint angles there, between which they would have to jump, rad")
+
+
 class GuidePart(Part):
     """Where everything is while the link is bent."""
 

@@ -5,11 +5,13 @@ from synth.synthesis.bound import Bound
 from synth.synthesis.check import (
     Between,
     Covering,
+    Followed,
     TargetResult,
     Verification,
     Violation,
     target_results,
     verify,
+    way_is_clear,
     what_counts,
     worst_targets,
 )
@@ -25,9 +27,9 @@ from synth.synthesis.solution import (
     help_told,
     proof_sentence,
     reasons_told,
+    sampled_lines,
     shape_line,
     showing,
-    surface_lines,
 )
 from synth.synthesis.solve import solve
 from synth.synthesis.wanted import (
@@ -41,7 +43,6 @@ from synth.synthesis.wanted import (
     displaced,
     motions,
     rotations,
-    way_is_clear,
     ways_and_forgiveness,
 )
 from synth.watch import Progress, Timing
@@ -57,6 +58,7 @@ __all__ = [
     "Design",
     "Displacements",
     "Figures",
+    "Followed",
     "Forgiveness",
     "Margins",
     "Motion",
@@ -79,10 +81,10 @@ __all__ = [
     "proof_sentence",
     "reasons_told",
     "rotations",
+    "sampled_lines",
     "shape_line",
     "showing",
     "solve",
-    "surface_lines",
     "target_results",
     "verify",
     "way_is_clear",

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.check import proven_between, verify
+from synth.synthesis.check import proven_between, verify_targets
 from synth.synthesis.many_targets import least_worst, ranked
 from synth.synthesis.search import followed_between
 from synth.synthesis.starts import most_covered, random_part, refined_for_all
+from synth.synthesis.turning import turned_designs
 from synth.synthesis.wanted import Design, best_of
 from synth.task import Objective
 
@@ -26,7 +27,7 @@ _VERIFIED_AT_MOST = 20_000
 _FIRST = 2_000  # of them are verified first, to see how long one takes
 _OF_TIME_LEFT = 0.8  # in which others are
 _LED_BETWEEN = 3  # times that shapes are led to where nothing is proven
-_PROVEN_BETWEEN = 2  # shapes whose surfaces are looked at between their samples, until one covers them
+_PROVEN_BETWEEN = 3  # shapes that are told where surfaces and paths are to be looked at between samples
 _COVERING = 3  # shapes that are looked at where a part of a surface may be left
 _REWEIGHTED = 6  # times that outliers near the surface are left out
 _USUAL = 3.5  # times the median miss: of normal noise two in a hundred are missed more
@@ -107,7 +108,7 @@ def for_all_targets(task: Task, designs: Sequence[Design], seed: int, watch: Wat
 
 def _best_covering(task: Task, arm: Arm, watch: Watch) -> Arm:
     """Return an arm after steps on what it covers best, which is chosen anew until it stays the same."""
-    check = verify(task, arm)
+    check = verify_targets(task, arm)
     in_the_way = ~np.array(check.within_tolerance) & (check.misses <= task.tolerances)
     chosen: Task | None = None
     for _ in range(_CHOSEN_ANEW):
@@ -135,7 +136,7 @@ def _without_outliers(task: Task, arm: Arm, watch: Watch) -> Arm:
 
 
 def proven_whole(part: Task, whole: WholeTask, seed: int, watch: Watch) -> WholeTask:
-    """Return designs, one first whose surfaces are proven between their samples, if there is one.
+    """Return designs, one first whose surfaces and paths are proven between samples, if there is one.
 
     Args:
         part: The task of few targets that they were found for.
@@ -143,28 +144,50 @@ def proven_whole(part: Task, whole: WholeTask, seed: int, watch: Watch) -> Whole
         seed: Seed of the search for shapes that cover what is between samples, where the first do not.
         watch: When it is up, nothing finer is looked at.
     """
-    if not whole.task.surfaces or whole.unseen:
+    if not (whole.task.surfaces or whole.task.paths) or whole.unseen:
         return whole
-    proven = led = _proven_first(whole.task, whole.designs, watch)
-    for _ in range(_LED_BETWEEN):
-        if not led or led[0].verification.found or not led[0].verification.between or watch.is_up():
+    task = whole.task
+    proven = led = _proven_first(task, whole.designs, watch)
+    for number in range(_LED_BETWEEN):
+        if not led or led[0].verification.found or watch.is_up():
             break
+        if not (led[0].verification.between or led[0].verification.followed):
+            break
+        if led[0].verification.followed and (turned := _turned_to_follow(task, led[0], watch)):
+            return replace(whole, designs=turned)
         with watch.on("solving"):
-            part, beside = followed_between(part, led, seed, watch)
-        led = _proven_first(whole.task, for_all_targets(whole.task, beside, seed, watch).designs, watch)
+            part, beside = followed_between(part, led, seed + number, watch)
+        led = _proven_first(task, for_all_targets(task, beside, seed, watch).designs, watch)
     return replace(whole, designs=led if led and led[0].verification.found else proven)
 
 
+def only_proven(task: Task, design: Design) -> Design:
+    """Return a design; of one that was looked at only at samples, where more matters, all is not reached."""
+    check = design.verification
+    joined = any(surface.samples.are_joined for surface in task.surfaces)
+    if (joined and not check.between) or (task.paths and not check.followed):
+        return replace(design, verification=replace(check, reaches_all=False))
+    return design
+
+
+def _turned_to_follow(task: Task, design: Design, watch: Watch) -> tuple[Design, ...]:
+    """Return the first design with the link turned about axis 1 that follows every path, if one does."""
+    for turned in turned_designs(task, design, watch):
+        with watch.on("verifying"):
+            check = proven_between(task, turned.arm, turned.verification, watch)
+        if check.found:
+            return best_of(task, [replace(turned, verification=check)], watch.is_up)
+    return ()
+
+
 def _proven_first(task: Task, designs: tuple[Design, ...], watch: Watch) -> tuple[Design, ...]:
-    """Return designs, the first few with what is proven, up to the first that covers what it should."""
-    proven: list[Design] = []
+    """Return the first few designs with what is proven of each, those first that do what they should."""
     with watch.on("verifying"):
-        for number, each in enumerate(designs[:_PROVEN_BETWEEN]):
-            check = proven_between(task, each.arm, each.verification, watch)
-            proven.append(replace(each, verification=check))
-            if check.found:
-                return (proven[-1], *designs[number + 1 :], *proven[:-1])
-    return (*proven, *designs[_PROVEN_BETWEEN:])
+        proven = [
+            replace(each, verification=proven_between(task, each.arm, each.verification, watch))
+            for each in designs[:_PROVEN_BETWEEN]
+        ]
+    return tuple(sorted(proven, key=lambda each: not each.verification.found))
 
 
 def verified_in_time(task: Task, arm: Arm, watch: Watch) -> tuple[Task, Design]:
@@ -176,15 +199,15 @@ def verified_in_time(task: Task, arm: Arm, watch: Watch) -> tuple[Task, Design]:
     """
     first = random_part(task, _FIRST, 0)
     if first is task or watch.remaining == np.inf:
-        return task, Design(arm, verify(task, arm))
+        return task, Design(arm, verify_targets(task, arm))
     began = watch.elapsed
-    check = verify(first, arm)
+    check = verify_targets(first, arm)
     spent = watch.elapsed - began
     count = len(task.targets)
     if _OF_TIME_LEFT * watch.remaining * _FIRST >= spent * count:
-        return task, Design(arm, verify(task, arm))
+        return task, Design(arm, verify_targets(task, arm))
     affordable = int(_OF_TIME_LEFT * watch.remaining * _FIRST / spent)
     if affordable > _FIRST:
         first = random_part(task, affordable, 0)
-        check = verify(first, arm)
+        check = verify_targets(first, arm)
     return first, Design(arm, replace(check, unseen=count - len(first.targets)))

@@ -52,7 +52,7 @@ def part_of(task: Task, seed: int, watch: Watch | None = None) -> Task:
     """
     if task.is_partial:
         covered = covered_part(task, seed, watch or Watch())
-        task = covered or replace(task, targets=replace(task.table, samples=None), surfaces=())
+        task = covered or task.asking_for(task.table)
     if len(task.targets) <= _MOST_TARGETS[task.objective]:
         return task
     # The worst miss of a part says little of the worst of all, and takes the program ten times as long.
@@ -68,7 +68,7 @@ def without_partial(task: Task) -> Task | None:
     must = np.flatnonzero(~np.isin(task.surface_of_targets, partial))
     if not len(must):
         return None
-    return replace(task, targets=replace(task.table.take(must), samples=None), surfaces=())
+    return task.asking_for(task.table.take(must))
 
 
 def ranked(task: Task, arms: Sequence[Arm], seed: int, watch: Watch) -> list[Arm]:

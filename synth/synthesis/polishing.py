@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from synth.errors import SolverError
-from synth.synthesis.check import verify
+from synth.synthesis.check import verify_targets
 from synth.synthesis.nlp import Structure, SynthesisNlp, separations, shared_nlp
 from synth.synthesis.shapes import ARCS
 from synth.synthesis.wanted import Design, judged, objective
@@ -101,11 +101,11 @@ class Polishing:
 
         Args:
             arm: The robot in the shape.
-            joints: Joint angles at the targets that `verify` considers, shape (n, 2), rad.
+            joints: Joint angles at the targets that `verify_targets` considers, shape (n, 2), rad.
             stay: Whether it keeps these where they will do; then it is judged, too.
         """
         with self.watch.on("verifying"):
-            design = Design(arm, verify(self.task, arm, joints, keep=stay))
+            design = Design(arm, verify_targets(self.task, arm, joints, keep=stay))
             if stay and design.verification.found:
                 design = judged(self.task, design, self.watch.is_up)
         (self.designs if design.verification.possible else self.blocked).append(design)

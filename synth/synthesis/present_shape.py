@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.robot import ANYWHERE, Interval, links_to_poses
-from synth.synthesis.check import verify
+from synth.synthesis.check import verify_targets
 from synth.synthesis.wanted import Design, best_of
 
 if TYPE_CHECKING:
@@ -46,5 +46,5 @@ def changing_little(task: Task, designs: Sequence[Design], seed: int, watch: Wat
             for arm, shape in zip(best, shapes, strict=True):
                 if shape is not None:
                     nearer = replace(arm, shape=shape)
-                    bent_again.append(Design(nearer, verify(task, nearer)))
+                    bent_again.append(Design(nearer, verify_targets(task, nearer)))
     return [design for design in bent_again if design.verification.found]

@@ -12,7 +12,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.errors import in_a_line
-from synth.synthesis.all_targets import WholeTask, for_all_targets, proven_whole, verified_in_time
+from synth.synthesis.all_targets import (
+    WholeTask,
+    for_all_targets,
+    only_proven,
+    proven_whole,
+    verified_in_time,
+)
 from synth.synthesis.bound import why_impossible
 from synth.synthesis.many_targets import without_partial
 from synth.synthesis.present_shape import changing_little
@@ -131,7 +137,8 @@ class Run:
                 for one in best_of(self.part, self.search.polishing.designs)[:1]:
                     seen, design = verified_in_time(self.task, one.arm, self.watch)
                     whole = WholeTask(seen, (design,) if design.verification.possible else ())
-        task, designs = whole.task, whole.designs
+        task, designs = whole.task, tuple(only_proven(whole.task, each) for each in whole.designs)
+        whole = replace(whole, designs=designs)
         status, reasons = Status.FAILED, tuple[str, ...]()
         with self.kept():
             status, reasons = self._verdict(whole)

@@ -13,12 +13,23 @@ from synth.task.entry_types import (
     absent,
 )
 from synth.task.hardware_distances import off_the_hardware
-from synth.task.model import Floor, Objective, Obstacle, Task, Topology
+from synth.task.model import (
+    DEFAULT_TOLERANCE,
+    Approach,
+    Floor,
+    Objective,
+    Obstacle,
+    PointTarget,
+    TargetTable,
+    Task,
+    Topology,
+    points_of,
+    sampled,
+)
 from synth.task.reading import as_path, as_task, load_robot, load_task, named_robot, parse_task, robot_within
 from synth.task.robot_schema import FileOfARobot, RobotEntry
 from synth.task.schema import json_schema, robot_schema, task_schema
 from synth.task.sizes import PER_METRE
-from synth.task.targets import DEFAULT_TOLERANCE, Approach, PointTarget, TargetTable, points_of, sampled
 from synth.task.wording import validate
 
 __all__ = [

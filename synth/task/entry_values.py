@@ -9,16 +9,14 @@ import numpy as np
 
 from synth.errors import InputError, Mistake
 from synth.geometry import Box, Capsule, Sphere, roll_pitch_yaw, rotation_of
+from synth.paths import Path
 from synth.robot import (
     BaseChoices,
     BasePlaces,
     BasePose,
     BaseRange,
     Interval,
-    JointLimits,
     LinkShape,
-    MalleableLink,
-    RigidLink,
     Robot,
     link_to_pose,
     turned,
@@ -26,25 +24,35 @@ from synth.robot import (
 from synth.surfaces import Scan, Surface, TriangleMesh, plane_within
 from synth.task.entry_types import BoxEntry, CapsuleEntry, SphereEntry, ends
 from synth.task.hardware_distances import off_the_hardware
-from synth.task.model import Obstacle, Task
+from synth.task.model import DEFAULT_TOLERANCE, Approach, Obstacle, PointTarget, Task, sampled
+from synth.task.robot_values import to_interval
 from synth.task.sizes import PER_METRE
 from synth.task.surface_schema import turned_to
-from synth.task.targets import DEFAULT_TOLERANCE, Approach, PointTarget, sampled
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
+    from typing import TypeVar
 
     from synth.arrays import FloatArray
     from synth.geometry import Solid
     from synth.surfaces import Shape
     from synth.task.base_schema import BaseEntry, ChoiceEntry
     from synth.task.entry_types import SolidEntry
-    from synth.task.robot_schema import RobotEntry
+    from synth.task.path_schema import PathEntry
     from synth.task.schema import CurrentEntry, ObstacleEntry, TargetEntry, TaskFile
     from synth.task.surface_schema import SurfaceEntry
 
+    _E = TypeVar("_E")
+    _V = TypeVar("_V")
 
-def to_task(file: TaskFile, robot: Robot, read: Mapping[int, FloatArray], name: str) -> Task:
+
+def to_task(
+    file: TaskFile,
+    robot: Robot,
+    read: Mapping[int, FloatArray],
+    waypoints: Mapping[int, FloatArray],
+    name: str,
+) -> Task:
     """Return the task of a file; `name` if it states none.
 
     Args:
@@ -52,6 +60,7 @@ def to_task(file: TaskFile, robot: Robot, read: Mapping[int, FloatArray], name: 
         robot: The robot that it names or describes.
         read: Of the surfaces that files hold, by their number, the points, shape (n, 3), or the corners of
             triangles, shape (n, 3, 3), in the unit of the file.
+        waypoints: Likewise of the paths whose waypoints files hold, shape (n, 3).
         name: What the task is called if it states no name.
 
     Raises:
@@ -60,12 +69,19 @@ def to_task(file: TaskFile, robot: Robot, read: Mapping[int, FloatArray], name: 
     per_metre = PER_METRE[file.length_unit]
     base, places = _to_base(file.base, per_metre)
     current = None if file.current is None else _to_shape(file.current, per_metre, robot, base)
-    surfaces = _surfaces(file, read, per_metre)
+    unit = file.length_unit
+    surfaces = _entries(
+        file.surface, "surface", lambda each, i, name: _to_surface(each, per_metre, unit, read.get(i), name)
+    )
+    paths = _entries(
+        file.path, "path", lambda each, i, name: _to_path(each, per_metre, waypoints.get(i), name)
+    )
     return Task(
         name=file.name or name,
         robot=robot,
-        targets=sampled(surfaces, _targets(file, per_metre)),
+        targets=sampled(surfaces, _targets(file, per_metre), paths),
         surfaces=surfaces,
+        paths=paths,
         base=base,
         floor=file.floor / per_metre if isinstance(file.floor, float) else file.floor,
         topology=file.topology,
@@ -93,7 +109,7 @@ def _to_range(entry: BaseEntry | ChoiceEntry, per_metre: float) -> BaseRange:
     angles = entry.rpy_deg or [0.0, 0.0, entry.yaw_deg or 0.0]
     in_radians = (tuple(map(math.radians, ends(angle))) for angle in angles)
     return BaseRange(
-        *(_interval(coordinate, per_metre) for coordinate in entry.position),
+        *(to_interval(coordinate, per_metre) for coordinate in entry.position),
         *(Interval(low, high) for low, high in in_radians),
     )
 
@@ -105,22 +121,38 @@ def _targets(file: TaskFile, per_metre: float) -> Sequence[PointTarget]:
     )
 
 
-def _surfaces(file: TaskFile, read: Mapping[int, FloatArray], per_metre: float) -> tuple[Surface, ...]:
-    surfaces, mistakes = [], []
-    is_one = not isinstance(file.surface, list)
-    for index, entry in enumerate(file.surface if isinstance(file.surface, list) else [file.surface]):
+def _entries(given: _E | list[_E] | None, key: str, make: Callable[[_E, int, str], _V]) -> tuple[_V, ...]:
+    """Return the values of one entry under a key, or of a list of them, with every mistake at its own key.
+
+    Args:
+        given: What stands under the key.
+        key: The key.
+        make: Returns the value of an entry, of its number and of what it is called if it states no name.
+    """
+    values, mistakes = [], []
+    is_list = isinstance(given, list)
+    for index, entry in enumerate(given if isinstance(given, list) else [given]):
         if not entry:
             continue
-        name, key = (
-            ("surface", "surface") if is_one else (default_name("surface", index), f"surface[{index}]")
-        )
+        name, at = (default_name(key, index), f"{key}[{index}]") if is_list else (key, key)
         try:
-            surfaces.append(_to_surface(entry, per_metre, file.length_unit, read.get(index), name))
+            values.append(make(entry, index, name))
         except InputError as error:
-            mistakes += [Mistake(each.message, key=f"{key}.{each.key}") for each in error.mistakes]
+            mistakes += [Mistake(each.message, key=f"{at}.{each.key}") for each in error.mistakes]
     if mistakes:
         raise InputError(mistakes)
-    return tuple(surfaces)
+    return tuple(values)
+
+
+def _to_path(entry: PathEntry, per_metre: float, read: FloatArray | None, name: str) -> Path:
+    return Path(
+        name=entry.name or name,
+        waypoints=np.array(entry.waypoints if read is None else read) / per_metre,
+        closed=entry.closed,
+        interpolation=entry.interpolation,
+        tolerance=DEFAULT_TOLERANCE if entry.tolerance is None else entry.tolerance / per_metre,
+        speed=None if entry.speed is None else entry.speed / per_metre,
+    )
 
 
 def _to_surface(
@@ -208,40 +240,3 @@ def _to_shape(entry: CurrentEntry, per_metre: float, robot: Robot, base: BasePos
         sentence = "no shape of this robot's link was found that puts P3 and P4 there"
         raise InputError([Mistake(sentence, key="current.markers")])
     return shape
-
-
-def to_robot(entry: RobotEntry, per_metre: float, name: str) -> Robot:
-    """Return the robot that an entry describes; `name` if it states none."""
-    link, limits, full = entry.link, entry.joint_limits_deg, JointLimits()
-    tip_offset = 0.5 * entry.d34 if entry.tip_offset is None else entry.tip_offset
-    bend = link.max_total_bend_deg
-    return Robot(
-        name=entry.name or name,
-        d12=entry.d12 / per_metre,
-        link=MalleableLink(
-            length=_interval(link.length, per_metre),
-            min_bend_radius=link.min_bend_radius / per_metre,
-            diameter=(link.diameter or 0.0) / per_metre,
-            max_total_bend=math.inf if bend is None else math.radians(bend),
-        ),
-        d34=entry.d34 / per_metre,
-        tip_offset=tip_offset / per_metre,
-        rigid_link=RigidLink(
-            _interval(entry.rigid_link.d35, per_metre),
-            _interval(entry.rigid_link.d45, per_metre),
-            (entry.rigid_link.diameter or 0.0) / per_metre,
-        ),
-        joint_limits=JointLimits(
-            base=full.base if limits.base is None else _radians(limits.base),
-            second=full.second if limits.second is None else _radians(limits.second),
-        ),
-    )
-
-
-def _interval(value: float | list[float], per_metre: float) -> Interval:
-    low, high = ends(value)
-    return Interval(low / per_metre, high / per_metre)
-
-
-def _radians(limits: list[float]) -> Interval:
-    return Interval(math.radians(limits[0]), math.radians(limits[1]))

@@ -16,10 +16,11 @@ from synth.files import Document, KeyPath, key_text, read_file, read_text
 from synth.names import did_you_mean
 from synth.robot import PRESETS
 from synth.surfaces import read_corners, read_points
-from synth.task.entry_values import default_name, to_robot, to_task
+from synth.task.entry_values import default_name, to_task
 from synth.task.model import Task
 from synth.task.robot_schema import RobotEntry, RobotFile
-from synth.task.schema import SurfaceTaskFile, TaskFile
+from synth.task.robot_values import to_robot
+from synth.task.schema import SampledTaskFile, TaskFile
 from synth.task.sizes import PER_METRE, unmeant_distances, unmeant_sizes, unmeant_sizes_of_robot
 from synth.task.wording import validate
 from synth.watch import never
@@ -155,12 +156,14 @@ def _task(document: Document, directory: Path, name: str) -> Task:
         (("targets",), "target", content.get("targets")),
         (("obstacles",), "obstacle", content.get("obstacles")),
         (("surface",), "surface", content.get("surface")),
+        (("path",), "path", content.get("path")),
         (("base", "choices"), "place", choices),
     ):
         _report_names_given_twice(document, path, kind, entries)
-    read = _surface_files(document, content.get("surface"), directory)
+    read = _files_of(document, "surface", {"points": read_points, "mesh": read_corners}, directory)
+    waypoints = _files_of(document, "path", {"csv": read_points}, directory)
     document.see_the_time()
-    file = validate(document, SurfaceTaskFile if "surface" in content else TaskFile)
+    file = validate(document, SampledTaskFile if {"surface", "path"} & content.keys() else TaskFile)
     document.see_the_time()
     if file is None or document.is_wrong:
         raise document.error()
@@ -168,7 +171,7 @@ def _task(document: Document, directory: Path, name: str) -> Task:
         robot = robot_within(document, file.robot, file.length_unit)
     assert robot is not None, "a robot is named or described"  # noqa: S101 - for the type checker
     try:
-        task = to_task(file, robot, read, name)
+        task = to_task(file, robot, read, waypoints, name)
         refuse_if_any(unmeant_distances(task, file.length_unit))
     except InputError as error:
         raise document.refuse(error) from None
@@ -186,12 +189,18 @@ def robot_within(document: Document, entry: RobotEntry, unit: str) -> Robot:
     return robot
 
 
-def _surface_files(document: Document, surface: object, directory: Path) -> dict[int, FloatArray]:
-    """Return what the files of surfaces hold, by the surfaces' numbers, with their mistakes reported."""
+def _files_of(
+    document: Document, key: str, readers: Mapping[str, Callable[..., FloatArray]], directory: Path
+) -> dict[int, FloatArray]:
+    """Return what the files hold that entries under a key name, by their numbers, with mistakes reported.
+
+    What reads the files is given by the keys within an entry that name them.
+    """
     read = {}
-    for index, entry in enumerate(surface if isinstance(surface, list) else [surface]):
-        path: KeyPath = ("surface", index) if isinstance(surface, list) else ("surface",)
-        for kind, reader in (("points", read_points), ("mesh", read_corners)):
+    given = document.value.get(key) if isinstance(document.value, dict) else None
+    for index, entry in enumerate(given if isinstance(given, list) else [given]):
+        path: KeyPath = (key, index) if isinstance(given, list) else (key,)
+        for kind, reader in readers.items():
             file = entry.get(kind) if isinstance(entry, dict) else None
             if isinstance(file, str) and file:
                 try:

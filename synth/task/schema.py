@@ -27,6 +27,7 @@ from synth.task.entry_types import (
     without_case,
 )
 from synth.task.model import Floor, Objective, Topology
+from synth.task.path_schema import Paths  # noqa: TC001 - pydantic reads the annotation
 from synth.task.robot_schema import FileOfARobot, RobotFile
 from synth.task.surface_schema import Surfaces  # noqa: TC001 - pydantic reads the annotation
 
@@ -123,14 +124,15 @@ class TaskFile(FileOfARobot):
     surface: Surfaces = Field(
         default_factory=absent, description="a surface to be covered, or a list of them"
     )
+    path: Paths = Field(default_factory=absent, description="a path to be followed, or a list of them")
     obstacles: list[ObstacleEntry] = Field(default=[], description="solids to keep clear of")
     current: CurrentEntry = Field(
         default_factory=absent, description="the present shape of the link, which is to change little"
     )
 
 
-class SurfaceTaskFile(TaskFile):
-    """A task file with a surface: it may do without targets."""
+class SampledTaskFile(TaskFile):
+    """A task file with a surface or a path: it may do without targets."""
 
     targets: Annotated[list[TargetEntry], Field(min_length=1)] = Field(
         default_factory=absent, description="the points to reach"
@@ -146,7 +148,7 @@ def task_schema() -> dict[str, Any]:
     """Return the JSON Schema of task files, for editors that complete and check YAML."""
     schema = TaskFile.model_json_schema()
     schema["required"] = [key for key in schema["required"] if key != "targets"]
-    schema["anyOf"] = [{"required": ["targets"]}, {"required": ["surface"]}]
+    schema["anyOf"] = [{"required": [key]} for key in ("targets", "surface", "path")]
     return json_schema(schema)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, get_args
 from pydantic import BaseModel, ValidationError
 
 from synth.checks import described
-from synth.files import KeyPath, Refused, key_text
+from synth.files import KeyPath, Refused
 from synth.names import did_you_mean, guesses
 from synth.task.entry_types import MAPPING, ONE, RANGE, TEXT
 
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
 _M = TypeVar("_M", bound=BaseModel)
 
-_LATER = "not supported by this version of synth yet; "
-_LATER_KEYS = {"path": f"a path to be followed is {_LATER}give points under 'targets'"}
 _SENTENCES = {
     "float_type": "must be a number, but is {value}",
     "one_or_range": "must be a number or [low, high], but is {value}",
@@ -48,9 +46,12 @@ _SENTENCES_AT: dict[KeyPath, dict[str, str]] = {
         "must be 1, the only version of this format, but is {value}",
     ),
     ("targets",): {"too_short": "must hold one target at least, but is an empty list"},
-    ("surface",): {
-        "too_short": "must hold one surface at least, but is an empty list",
-        "union_tag_not_found": "must be a mapping (key: value) or a list of them, but is {value}",
+    **{
+        (kind,): {
+            "too_short": f"must hold one {kind} at least, but is an empty list",
+            "union_tag_not_found": "must be a mapping (key: value) or a list of them, but is {value}",
+        }
+        for kind in ("surface", "path")
     },
     ("base", "choices"): {"too_short": "must hold one place at least, but is an empty list"},
 }
@@ -109,7 +110,7 @@ def _sentence(detail: ErrorDetails, path: KeyPath, siblings: dict[str, Any]) -> 
         return f"is missing ({siblings[key].description})"
     if kind == "extra_forbidden":
         known = did_you_mean(key, siblings) or f"; known are {', '.join(siblings)}"
-        return _LATER_KEYS.get(key_text(path), f"is not a known key{known}")
+        return f"is not a known key{known}"
     context = detail.get("ctx", {})
     if kind == "float_type" and detail["loc"][-1] == ONE:
         kind = "one_or_range"

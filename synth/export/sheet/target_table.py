@@ -10,7 +10,7 @@ import numpy as np
 from synth.export.sheet.page import MARGIN, WIDTH
 from synth.export.sheet.typesetting import shortened
 from synth.rounding import rounded_down, rounded_up
-from synth.synthesis import clearance_told, surface_lines, target_results, worst_targets
+from synth.synthesis import clearance_told, sampled_lines, target_results, worst_targets
 from synth.task import DEFAULT_TOLERANCE
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ def target_table(page: Page, x: float, y: float, solution: Solution) -> float:
 def _below(page: Page, x: float, bottom: float, solution: Solution) -> float:
     """Write what stands below the table: the surfaces, and what the signs mean."""
     task, listed = solution.task, listed_targets(solution)
-    for told in surface_lines(solution.best) if solution.designs else ():
+    for told in sampled_lines(solution.best) if solution.designs else ():
         bottom = page.paragraph(x, bottom, told, WIDTH - 2 * MARGIN, most=3, pitch=3.1, size=6.5) + 0.4
     if len(listed) < len(task.targets):
         page.text(x + 6.0, bottom, "all of them: see solution.json", 6.5, color="#555555")

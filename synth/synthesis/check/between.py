@@ -20,8 +20,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.synthesis.check.covering import Between
-from synth.synthesis.check.verification import verify
+from synth.synthesis.check.following import followed
+from synth.synthesis.check.verification import verify_targets
 from synth.task import points_of
+from synth.watch import Watch
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,14 +33,34 @@ if TYPE_CHECKING:
     from synth.surfaces import Cells, Surface
     from synth.synthesis.check.verification import Verification
     from synth.task import Task
-    from synth.watch import Watch
 
 _FINER = (4, 16, 64)  # times the cells of the samples, where these do not prove that the surface is covered
 _MOST_CELLS = 60_000  # that are looked at together
 
 
+def verify(task: Task, arm: Arm, joints: FloatArray | None = None, *, keep: bool = False) -> Verification:
+    """Check a shape against a task.
+
+    Everything is seen from the base of the arm, and from nowhere else; an arm that stands elsewhere than
+    the task says breaks a limit by that alone.
+
+    Args:
+        task: The task.
+        arm: The robot in the shape.
+        joints: Joint angles to consider beside the closest ones and the branches of the inverse
+            kinematics, shape (n, 2), rad: at the closest point the arm may be in the way of something.
+        keep: Whether the arm is to stand at these angles wherever they reach the target within its
+            tolerance, and clear of everything, though others come nearer.
+
+    Returns:
+        The misses by forward kinematics, every limit that is broken, and what is proven of surfaces and
+        paths between their samples.
+    """
+    return proven_between(task, arm, verify_targets(task, arm, joints, keep=keep), Watch())
+
+
 def proven_between(task: Task, arm: Arm, check: Verification, watch: Watch) -> Verification:
-    """Return what a shape does with what is proven of its surfaces; without a proof it reaches not all.
+    """Return what a shape does with what is proven of surfaces and paths; without a proof it reaches not all.
 
     Args:
         task: The task.
@@ -51,7 +73,9 @@ def proven_between(task: Task, arm: Arm, check: Verification, watch: Watch) -> V
     between = tuple(
         between_samples(task, arm, surface, watch) for surface in task.surfaces if surface.samples.are_joined
     )
-    return replace(check, between=between, reaches_all=all(each.met for each in between))
+    paths = tuple(followed(task, arm, path, watch) for path in task.paths)
+    met = [*(each.met for each in between), *(each.met for each in paths)]
+    return replace(check, between=between, followed=paths, reaches_all=all(met))
 
 
 def between_samples(task: Task, arm: Arm, surface: Surface, watch: Watch) -> Between:
@@ -100,7 +124,7 @@ class _Level:
         if not len(chosen):
             return
         cells = self._cells.take(chosen)
-        check = verify(replace(task, targets=points_of(surface, cells), surfaces=()), arm)
+        check = verify_targets(task.asking_for(points_of(surface, cells)), arm)
         bounds = largest_misses(arm, check.joints, check.misses, cells)
         self._most[chosen] = np.where(check.within_tolerance, bounds, np.inf)
 

@@ -16,6 +16,7 @@ from synth.robot import Arm
 from synth.synthesis.check.approaches import pointing_astray, points_elsewhere
 from synth.synthesis.check.clearances import Clearances, chosen_joints
 from synth.synthesis.check.covering import Between, Covering, counted, coverings
+from synth.synthesis.check.followed import Followed  # noqa: TC001 - a field
 from synth.synthesis.check.violations import Violation, violations
 from synth.task import Task
 
@@ -41,9 +42,11 @@ class Verification:
         unseen: How many more targets are asked for that were not looked at, for lack of time: with any, no
             shape counts as found.
         coverings: What is covered of each surface.
-        reaches_all: Whether every target of its own is reached, and as much of each surface as was asked for.
+        reaches_all: Whether every target is reached, samples of paths with them, and as much of each surface
+            as was asked for.
         between: What is proven of the surfaces that are known between their samples, see `between_samples`;
             empty before that was looked at.
+        followed: How each path is followed, see `followed`; empty before that was looked at.
     """
 
     joints: FloatArray
@@ -58,6 +61,7 @@ class Verification:
     coverings: tuple[Covering, ...] = ()
     reaches_all: bool = False
     between: tuple[Between, ...] = ()
+    followed: tuple[Followed, ...] = ()
 
     @property
     def possible(self) -> bool:
@@ -70,11 +74,13 @@ class Verification:
         return self.possible and self.reaches_all and not self.unseen
 
 
-def verify(task: Task, arm: Arm, joints: FloatArray | None = None, *, keep: bool = False) -> Verification:
-    """Check a shape against a task.
+def verify_targets(
+    task: Task, arm: Arm, joints: FloatArray | None = None, *, keep: bool = False
+) -> Verification:
+    """Check a shape at the targets of a task, samples of surfaces and of paths with them.
 
-    Everything is seen from the base of the arm, and from nowhere else; an arm that stands elsewhere than
-    the task says breaks a limit by that alone.
+    What is between samples is not looked at: that `verify` does. Everything is seen from the base of the arm,
+    and from nowhere else; an arm that stands elsewhere than the task says breaks a limit by that alone.
 
     Args:
         task: The task.
@@ -102,7 +108,7 @@ def verify(task: Task, arm: Arm, joints: FloatArray | None = None, *, keep: bool
     else:
         broken = violations(task, arm, chosen, reached, room)
     covered = coverings(task, misses, within)
-    of_its_own = task.surface_of_targets < 0
+    of_no_surface = task.surface_of_targets < 0
     return Verification(
         joints=frozen(chosen),
         reached=frozen(reached),
@@ -113,7 +119,7 @@ def verify(task: Task, arm: Arm, joints: FloatArray | None = None, *, keep: bool
         clearances=frozen(room.from_obstacles.min(axis=(-2, -1), initial=math.inf)),
         violations=broken,
         coverings=covered,
-        reaches_all=bool(within[of_its_own].all()) and all(each.met for each in covered),
+        reaches_all=bool(within[of_no_surface].all()) and all(each.met for each in covered),
     )
 
 
@@ -147,5 +153,4 @@ def what_counts(task: Task, arm: Arm, check: Verification) -> tuple[Task, Verifi
         astray=frozen(check.astray[chosen]),
         clearances=frozen(check.clearances[chosen]),
     )
-    table = replace(task.table.take(chosen), samples=None)
-    return replace(task, targets=table, surfaces=()), part
+    return task.asking_for(task.table.take(chosen)), part

@@ -5,7 +5,7 @@ from synth.synthesis.solution.outcome import Outcome, Release
 from synth.synthesis.solution.shape_text import clearance_told, shape_line
 from synth.synthesis.solution.solution import NotFoundError, Solution, showing
 from synth.synthesis.solution.summary import help_told, proof_sentence, reasons_told
-from synth.synthesis.solution.surface_text import surface_lines
+from synth.synthesis.solution.surface_text import sampled_lines
 
 __all__ = [
     "NotFoundError",
@@ -20,8 +20,8 @@ __all__ = [
     "note_on_ways",
     "proof_sentence",
     "reasons_told",
+    "sampled_lines",
     "shape_line",
     "showing",
-    "surface_lines",
     "why_no_better",
 ]

@@ -9,6 +9,7 @@ import numpy as np
 
 from synth.rounding import Unit, rounded_up
 from synth.sentences import SentenceEnum
+from synth.synthesis.solution.path_text import beyond_joint_limits
 from synth.synthesis.starts import exact_arms
 
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ def why_no_better(task: Task, designs: Sequence[Design], blocked: Sequence[Desig
         blocked: Shapes that the hardware cannot take.
     """
     if designs:
-        return (*not_of_revolution(task), *_why_not_exact(task))
+        return (*beyond_joint_limits(task, designs[0]), *not_of_revolution(task), *_why_not_exact(task))
     # As far as the shape tells that breaks the fewest limits.
     nearest = min((d.verification.violations for d in blocked), key=len, default=())
     blocking = [violation.sentence for violation in nearest[:_REASONS]]
@@ -94,11 +95,12 @@ def why_no_better(task: Task, designs: Sequence[Design], blocked: Sequence[Desig
 def _what_misses(task: Task, design: Design) -> list[str]:
     """Return a sentence for each target that is not reached, the worst first, three at most."""
     check = design.verification
-    of_surfaces = [each.sentence for each in check.coverings if not each.met]
-    of_surfaces += [each.sentence for each in check.between if not each.met]
+    sampled = [each.sentence for each in check.coverings if not each.met]
+    sampled += [each.sentence for each in check.between if not each.met]
+    sampled += [each.sentence for each in check.followed if not each.met]
     order = np.argsort(-check.misses / task.tolerances)
     order = order[~np.array(check.within_tolerance)[order] & (task.surface_of_targets[order] < 0)]
-    sentences = [*of_surfaces, *(_how_missed(task, check, index) for index in order[:3].tolist())]
+    sentences = [*sampled, *(_how_missed(task, check, index) for index in order[:3].tolist())]
     return sentences if len(order) <= 3 else [*sentences, f"and {len(order) - 3} more"]
 
 

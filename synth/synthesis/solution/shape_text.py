@@ -11,7 +11,7 @@ from synth.robot import MOST_CLEARANCE
 from synth.rounding import Unit, counted, rounded_down, rounded_up
 from synth.sentences import FOUND, MISSED, bulleted
 from synth.synthesis.check import target_results, worst_targets
-from synth.synthesis.solution.surface_text import surface_lines
+from synth.synthesis.solution.surface_text import sampled_lines
 from synth.synthesis.wanted import ways_and_forgiveness
 from synth.task import DEFAULT_TOLERANCE
 
@@ -34,9 +34,10 @@ def _direction_told(target: TargetResult) -> str:
 
 def target_lines(task: Task, design: Design) -> list[str]:
     """Return a line for each target, names and numbers in columns; of many targets the worst only."""
-    lines, count, shown = surface_lines(design), len(task.targets), None
-    if task.is_partial or any(each.is_joined for each in design.verification.coverings):
-        own = np.flatnonzero(task.surface_of_targets < 0)
+    lines, count, shown = sampled_lines(design), len(task.targets), None
+    check = design.verification
+    if task.is_partial or check.followed or any(each.is_joined for each in check.coverings):
+        own = np.flatnonzero(task.is_of_its_own if check.followed else task.surface_of_targets < 0)
         if not len(own):
             return lines
         worst = worst_targets(task, design.verification, count)

@@ -1,4 +1,4 @@
-"""What is said of surfaces: how much of each is covered, and what tolerances would be met."""
+"""What is said of surfaces and paths: how much of each is covered or followed, and what would be met."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 
-def surface_lines(design: Design) -> list[str]:
-    """Return a line for each surface: how much of it is covered, and what is certain between its samples."""
+def sampled_lines(design: Design) -> list[str]:
+    """Return a line for each surface, how much is covered and what is certain, and for each path."""
     proven = {each.name: each for each in design.verification.between}
     lines = []
     for covering in design.verification.coverings:
@@ -26,13 +26,14 @@ def surface_lines(design: Design) -> list[str]:
             lines.append(
                 bulleted(f"{covering.name}: all this holds for its points; between them nothing is known")
             )
-    return lines
+    followed = design.verification.followed
+    return [*lines, *(f"{FOUND if each.met else MISSED} {each.sentence}" for each in followed)]
 
 
 def met_tolerances(task: Task, design: Design) -> list[str]:
     """Return which tolerances the nearest shape found would meet, as far as that is known."""
     check = design.verification
-    if check.between:  # nothing is certain of what is between the samples
+    if check.between or check.followed:  # nothing is certain of what is between the samples
         return []
     misses = [*check.misses[task.surface_of_targets < 0], *(each.largest for each in check.coverings)]
     return [f"tolerances of {rounded_up(max(misses), digits=2)} mm would be met by the nearest shape found"]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.check import counted, verify
+from synth.synthesis.check import counted, verify_targets
 from synth.synthesis.starts.refined import Trimmed
 from synth.synthesis.starts.refinement import refine
 from synth.synthesis.starts.screening import estimated_misses, shapes_for
@@ -108,12 +108,12 @@ def most_covered(task: Task, arm: Arm, in_the_way: NDArray[np.bool_] | None = No
         in_the_way: At which targets it cannot stand, shape (n,); by default that is looked at.
     """
     if in_the_way is None:
-        check = verify(task, arm)
+        check = verify_targets(task, arm)
         misses, in_the_way = check.misses, ~np.array(check.within_tolerance)
     else:
         misses = arm.closest_joints(task.table.positions)[1]
     chosen = np.flatnonzero(counted(task, np.where(in_the_way, misses + task.tolerances, misses)))
-    return replace(task, targets=replace(task.table.take(chosen), samples=None), surfaces=())
+    return task.asking_for(task.table.take(chosen))
 
 
 def trimmed_cost(task: Task, arm: Arm) -> float:

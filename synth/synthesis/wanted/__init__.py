@@ -8,7 +8,6 @@ from synth.synthesis.wanted.judging import judged, ways_and_forgiveness
 from synth.synthesis.wanted.margins import Margins
 from synth.synthesis.wanted.motion import Motion
 from synth.synthesis.wanted.ranking import best_of, leaves_no_wish, objective, preferred_designs
-from synth.synthesis.wanted.surroundings import way_is_clear
 from synth.synthesis.wanted.wanted_shapes import wished
 from synth.synthesis.wanted.ways import MOST_MOTIONS, motions
 
@@ -28,7 +27,6 @@ __all__ = [
     "objective",
     "preferred_designs",
     "rotations",
-    "way_is_clear",
     "ways_and_forgiveness",
     "wished",
 ]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.check import verify, what_counts
+from synth.synthesis.check import verify_targets, what_counts
 from synth.synthesis.wanted.figures import Figures
 from synth.synthesis.wanted.forgiveness import hand_forgiveness
 from synth.synthesis.wanted.margins import Margins
@@ -45,7 +45,7 @@ def judged(task: Task, design: Design, is_up: Callable[[], bool] = never) -> Des
     ):
         ways, joints = routed(task, design, is_up)
         if not np.array_equal(joints, design.verification.joints):
-            design = replace(design, verification=verify(task, design.arm, joints, keep=True))
+            design = replace(design, verification=verify_targets(task, design.arm, joints, keep=True))
     arm = design.arm
     counting, check = what_counts(task, arm, design.verification)
     margins = Margins.of(arm, check.joints, check.clearances)

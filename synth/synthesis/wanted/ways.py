@@ -13,12 +13,11 @@ import numpy as np
 
 from synth.checks import refuse_unless
 from synth.robot import turned
-from synth.synthesis.check import joints_reaching
+from synth.synthesis.check import Surroundings, joints_reaching
 from synth.synthesis.wanted.design import Design
 from synth.synthesis.wanted.margins import joint_shortfalls
 from synth.synthesis.wanted.motion import Motion, travel_of
 from synth.synthesis.wanted.shortest_path import shortest_path
-from synth.synthesis.wanted.surroundings import Surroundings
 from synth.task import Task
 from synth.watch import never
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.robot import ArmBody, clear_of_obstacles, clear_of_tube
-from synth.synthesis.check import seen_by
+from synth.synthesis.check.clearances import seen_by
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.geometry import Solid
     from synth.robot import Arm
-    from synth.synthesis.wanted.motion import Motion
     from synth.task import Task
 
 _ANGLE_SLACK = 1e-6  # what rounding may do, rad
@@ -75,8 +74,14 @@ class Surroundings:
         return np.asarray(np.minimum(heights, body.arm.end_frame[1][2]) - body.rod_radius - self.floor)
 
 
-def way_is_clear(task: Task, arm: Arm, motion: Motion) -> bool:
-    """Return whether a way that was found is within the joint limits, and certainly clear of everything."""
-    way, around = motion.joints, Surroundings(task, arm)
+def way_is_clear(task: Task, arm: Arm, way: FloatArray) -> bool:
+    """Return whether a way is within the joint limits, and certainly clear of everything.
+
+    Args:
+        task: The task, for its obstacles and floor.
+        arm: The robot in a shape.
+        way: Joint angles (theta1, theta2), shape (k, 2), rad, straight in between.
+    """
+    around = Surroundings(task, arm)
     within = around.limits.contain(way, _ANGLE_SLACK)
     return bool(within.all() and around.clear(way[:-1], way[1:]).all())

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, overload
 
@@ -16,8 +15,6 @@ from synth.names import given_twice
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from synth.surfaces import Cells, Surface
 
 
 DEFAULT_APPROACH_TOLERANCE = math.radians(5.0)
@@ -95,8 +92,8 @@ class TargetTable(Sequence[PointTarget]):
         weights: Factors of their (miss / tolerance)^2, shape (n,).
         approaches: Directions of arrival in the task frame and their tolerances, rad, shape (n, 4), rows of
             NaN for targets without one; None if all are.
-        samples: Which cell of the task's surfaces each stands for, counted over all of them, shape (n,); -1
-            for a target of its own. By default all are of their own.
+        samples: Which sample of the task's surfaces and paths each is, counted over all of them, shape (n,);
+            -1 for a target of its own. By default all are of their own.
     """
 
     names: Sequence[str]
@@ -191,32 +188,6 @@ def _rows(approaches: Sequence[Approach | None]) -> FloatArray | None:
 
 def _no_approaches(count: int) -> FloatArray:
     return np.full((count, 4), np.nan)
-
-
-def sampled(surfaces: Sequence[Surface], targets: Sequence[PointTarget] = ()) -> TargetTable:
-    """Return targets, and behind them the samples of surfaces as targets.
-
-    Args:
-        surfaces: The surfaces, as they stand in the task.
-        targets: Targets beside them.
-    """
-    table, first = TargetTable.of(targets), 0
-    for surface in surfaces:
-        samples = points_of(surface, surface.samples)
-        table = table.followed_by(replace(samples, samples=first + np.arange(len(samples))))
-        first += len(samples)
-    return table
-
-
-def points_of(surface: Surface, cells: Cells) -> TargetTable:
-    """Return cells of a surface as targets, whose weights are in proportion to their areas."""
-    count = len(cells)
-    return TargetTable(
-        tuple(f"{surface.name} point {number}" for number in range(1, count + 1)),
-        cells.points,
-        np.full(count, surface.tolerance),
-        cells.areas / cells.areas.mean(),
-    )
 
 
 def _check_names(checks: Checks, given: Any) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import field, replace
 from enum import Enum
@@ -13,18 +12,15 @@ import numpy as np
 
 from synth.arrays import FloatArray, frozen, frozen_value
 from synth.checks import Checks, described, wrong_type
-from synth.geometry import Box, Capsule, Sphere
 from synth.names import given_twice
+from synth.paths import Path
 from synth.robot import BaseChoices, BasePlaces, BasePose, BaseRange, LinkShape, Robot
 from synth.surfaces import Surface
-from synth.task.targets import PointTarget, TargetTable
+from synth.task.model.standing import Floor, Obstacle, Standing
+from synth.task.model.targets import PointTarget, TargetTable
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from synth.geometry import Solid
-
-_SLAB = 100.0  # m: the edge of the block that stands for a floor
 
 
 class Topology(Enum):
@@ -37,12 +33,6 @@ class Topology(Enum):
     SPHERICAL = "spherical"
 
 
-class Floor(Enum):
-    """A floor that is not told as a height."""
-
-    AT_BASE = "at base"
-
-
 class Objective(Enum):
     """What is made small: a norm of (miss / tolerance) over the targets."""
 
@@ -51,26 +41,7 @@ class Objective(Enum):
 
 
 @frozen_value
-class Obstacle:
-    """A solid that link, rigid link and end effector keep clear of.
-
-    Attributes:
-        name: How the result speaks of it.
-        solid: Where it is, in the task frame, m.
-    """
-
-    name: str
-    solid: Solid
-
-    def __post_init__(self) -> None:
-        checks = Checks(self)
-        checks.name("name")
-        checks.is_a("solid", (Sphere, Box, Capsule))
-        checks.refuse()
-
-
-@frozen_value
-class Task:
+class Task(Standing):
     """A synthesis task: reach the targets with one shape of the link.
 
     Attributes:
@@ -82,6 +53,7 @@ class Task:
             none. By default that of P1 where the base is upright, and none where it leans.
         places: Where the robot may be made to stand; None where `base` says it.
         surfaces: What the targets that are samples of surfaces are samples of, see `sampled`.
+        paths: Likewise the paths, each to be followed in one go.
         topology: Kind of shape asked for.
         objective: Norm of the misses that is made small.
         obstacles: What the robot keeps clear of at every target.
@@ -100,6 +72,7 @@ class Task:
     current: LinkShape | None = None
     places: BasePlaces | None = None
     surfaces: tuple[Surface, ...] = ()
+    paths: tuple[Path, ...] = ()
 
     def __post_init__(self) -> None:
         checks = Checks(self)
@@ -120,7 +93,7 @@ class Task:
             checks.number("floor")
         checks.word("topology", Topology)
         checks.word("objective", Objective)
-        for key, kind in (("obstacles", Obstacle), ("surfaces", Surface)):
+        for key, kind in (("obstacles", Obstacle), ("surfaces", Surface), ("paths", Path)):
             if _are_all(checks, key, given := getattr(self, key), kind):
                 checks.put(key, tuple(given))
                 names = [each.name for each in given]
@@ -163,69 +136,34 @@ class Task:
 
     @cached_property
     def surface_of_targets(self) -> NDArray[np.intp]:
-        """Of which surface each target is a sample, shape (n,); -1 for a target of its own."""
-        ends = np.cumsum([0, *(len(surface.samples) for surface in self.surfaces)])
-        return np.searchsorted(ends, self.table.cell, side="right") - 1
+        """Of which surface each target is a sample, shape (n,); -1 for one of its own or of a path."""
+        return np.where(self._sampled < len(self.surfaces), self._sampled, -1)
+
+    @cached_property
+    def path_of_targets(self) -> NDArray[np.intp]:
+        """Of which path each target is a sample, shape (n,); -1 for any other."""
+        return np.maximum(self._sampled - len(self.surfaces), -1)
+
+    @cached_property
+    def is_of_its_own(self) -> NDArray[np.bool_]:
+        """Whether each target is no sample of a surface or of a path, shape (n,)."""
+        return self._sampled < 0
+
+    @cached_property
+    def _sampled(self) -> NDArray[np.intp]:
+        """Of which surface each target is a sample, then of which path, shape (n,); -1 for one of its own."""
+        counts = [*(len(each.samples) for each in self.surfaces), *(len(each.samples) for each in self.paths)]
+        return np.searchsorted(np.cumsum([0, *counts]), self.table.cell, side="right") - 1
 
     @property
     def is_partial(self) -> bool:
         """Whether a part of a surface may be left uncovered."""
         return any(surface.coverage < 1.0 for surface in self.surfaces)
 
-    def standing_at(self, base: BasePose) -> Task:
-        """Return the same task with the base at one of its places, and no choice of it left."""
-        return replace(self, base=base, places=None)
-
-    def lowest_from(self, base: BasePose) -> float:
-        """Return the height in the frame of an upright base that the arm stays above, m; -inf for none.
-
-        Where the base leans the floor is a solid to keep clear of, see `solids_from`.
-        """
-        if self.floor is None or not base.is_upright:
-            return -math.inf
-        return 0.0 if isinstance(self.floor, Floor) else self.floor - float(base.position[2])
-
-    def solids_from(self, base: BasePose) -> tuple[Solid, ...]:
-        """Return what the arm keeps clear of in the frame of a base."""
-        return tuple(
-            obstacle.solid.seen_from(base.position, base.rotation) for obstacle in self.obstacles_from(base)
-        )
-
-    def obstacles_from(self, base: BasePose) -> tuple[Obstacle, ...]:
-        """Return the obstacles, for a base that leans with a slab for the floor."""
-        if base.is_upright or not isinstance(self.floor, float):
-            return self.obstacles
-        return (*self.obstacles, _slab(self.floor, base.position))
-
-    @property
-    def floor_height(self) -> float | None:
-        """Height of the floor in the task frame, m; None where there is none."""
-        if isinstance(self.floor, Floor):
-            return float(self.base.position[2]) if self.base.is_upright else None
-        return self.floor
-
-    @cached_property
-    def floor_in_base(self) -> float | None:
-        """Height of the floor in the base frame, m; None where there is none or the base leans."""
-        lowest = self.lowest_from(self.base)
-        return None if lowest == -math.inf else lowest
-
-    @property
-    def solids_in_task(self) -> tuple[Solid, ...]:
-        """What the arm keeps clear of in the task frame, a floor of a given height with it."""
-        floor = [_slab(self.floor, self.base.position)] if isinstance(self.floor, float) else []
-        return tuple(obstacle.solid for obstacle in (*self.obstacles, *floor))
-
-    @cached_property
-    def solids(self) -> tuple[Solid, ...]:
-        """What the arm keeps clear of in the base frame."""
-        return self.solids_from(self.base)
-
-
-def _slab(height: float, position: FloatArray) -> Obstacle:
-    """Return a block that stands for a floor about a position."""
-    middle = np.array([position[0], position[1], height - 0.5 * _SLAB])
-    return Obstacle("the floor", Box(middle, np.full(3, _SLAB)))
+    def asking_for(self, targets: Sequence[PointTarget]) -> Task:
+        """Return the same task with other targets, none of which is a sample of anything."""
+        table = replace(TargetTable.of(targets), samples=None)
+        return replace(self, targets=table, surfaces=(), paths=())
 
 
 def _report_names_given_twice(

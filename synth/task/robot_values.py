@@ -1,0 +1,50 @@
+"""From what a file holds of a robot, in its unit, to its values, in metres and radians."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from synth.robot import Interval, JointLimits, MalleableLink, RigidLink, Robot
+from synth.task.entry_types import ends
+
+if TYPE_CHECKING:
+    from synth.task.robot_schema import RobotEntry
+
+
+def to_robot(entry: RobotEntry, per_metre: float, name: str) -> Robot:
+    """Return the robot that an entry describes; `name` if it states none."""
+    link, limits, full = entry.link, entry.joint_limits_deg, JointLimits()
+    tip_offset = 0.5 * entry.d34 if entry.tip_offset is None else entry.tip_offset
+    bend = link.max_total_bend_deg
+    return Robot(
+        name=entry.name or name,
+        d12=entry.d12 / per_metre,
+        link=MalleableLink(
+            length=to_interval(link.length, per_metre),
+            min_bend_radius=link.min_bend_radius / per_metre,
+            diameter=(link.diameter or 0.0) / per_metre,
+            max_total_bend=math.inf if bend is None else math.radians(bend),
+        ),
+        d34=entry.d34 / per_metre,
+        tip_offset=tip_offset / per_metre,
+        rigid_link=RigidLink(
+            to_interval(entry.rigid_link.d35, per_metre),
+            to_interval(entry.rigid_link.d45, per_metre),
+            (entry.rigid_link.diameter or 0.0) / per_metre,
+        ),
+        joint_limits=JointLimits(
+            base=full.base if limits.base is None else _radians(limits.base),
+            second=full.second if limits.second is None else _radians(limits.second),
+        ),
+    )
+
+
+def to_interval(value: float | list[float], per_metre: float) -> Interval:
+    """Return a number or a pair of a file as an interval, in metres."""
+    low, high = ends(value)
+    return Interval(low / per_metre, high / per_metre)
+
+
+def _radians(limits: list[float]) -> Interval:
+    return Interval(math.radians(limits[0]), math.radians(limits[1]))
