@@ -15,6 +15,7 @@ from planted import ROBOT, planted_task
 from planted_approaches import planted_approach
 from planted_bases import planted_base
 from planted_obstacles import planted_with_obstacles
+from planted_paths import planted_path
 from planted_surfaces import as_mesh, as_points, as_torus
 from sampled_shapes import noisy_task
 from standing import BARS, HOLD, SIGMA, seen
@@ -92,6 +93,7 @@ def recorded_values(folder):
         _small()
         _free_bases()
         _surfaces()
+        _paths()
     return made
 
 
@@ -163,6 +165,11 @@ def _surfaces():
     task, arm = as_mesh(0, 4)
     between_samples(task, arm, task.surfaces[0], Watch(1.0))
     Rectangle([1.0, 0.5])
+
+
+def _paths():
+    task, arm = planted_path(2)
+    verify(task, arm)
 
 
 def _small():

@@ -1,6 +1,7 @@
 """The independent check of a shape, by forward kinematics; it imports no other part of the synthesis."""
 
 from synth.synthesis.check.between import between_samples, proven_between, verify
+from synth.synthesis.check.chain import cheapest_chain
 from synth.synthesis.check.clearances import clear_of_everything, seen_by
 from synth.synthesis.check.covering import Between, Covering, counted
 from synth.synthesis.check.followed import Followed
@@ -19,6 +20,7 @@ __all__ = [
     "Verification",
     "Violation",
     "between_samples",
+    "cheapest_chain",
     "clear_of_everything",
     "counted",
     "followed",

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import frozen
+from synth.synthesis.check.chain import Chain, cheapest_chain
 from synth.synthesis.check.followed import Followed
 from synth.synthesis.check.surroundings import Surroundings
 from synth.synthesis.check.target_results import joints_reaching
@@ -122,9 +123,10 @@ class _Track:
         cost = np.where(open_, np.abs(lasts - firsts).max(axis=-1), np.inf)
         costs = np.split(cost, np.cumsum([len(each) for each in pairs])[:-1])
         steps = [each.reshape(a, b) for each, (a, b) in zip(costs, itertools.pairwise(sizes), strict=True)]
-        taken, passed, reached = _shortest(steps, closed=self._path.closed)
-        if taken is None:
-            return self._broken(passed, self._postures[passed][reached])
+        chain = self._least_turning(steps)
+        if not chain.taken:
+            return self._broken(chain.passed, self._postures[chain.passed][chain.reached])
+        taken = chain.taken
         ends = np.append(0, np.cumsum([len(each) for each in pairs]))
         chosen = np.array([ends[i] + taken[i] * sizes[i + 1] + taken[i + 1] for i in range(len(pairs))])
         return Followed(
@@ -139,6 +141,14 @@ class _Track:
             jump=frozen(np.empty((0, 2))),
             speed=self._path.speed,
         )
+
+    def _least_turning(self, steps: Sequence[FloatArray]) -> Chain:
+        """Return the chain on which the joints turn least; of a closed path one that ends as it begins."""
+        if not self._path.closed:
+            return cheapest_chain(np.zeros(len(steps[0])), steps)
+        each = np.where(np.eye(len(steps[0]), dtype=np.bool_), 0.0, np.inf)
+        chains = [cheapest_chain(alone, [*steps[:-1], steps[-1] + alone]) for alone in each]
+        return min(chains, key=lambda chain: (chain.cost, -chain.passed))
 
     def _broken(self, interval: int, before: FloatArray) -> Followed:
         """Return that the path is not followed past an interval, at whose start the arm has some postures."""
@@ -214,43 +224,3 @@ def _least_jump(before: FloatArray, after: FloatArray) -> FloatArray:
     turn = np.abs(after[None] - before[:, None]).max(axis=-1)
     first, last = np.unravel_index(np.argmin(turn), turn.shape)
     return np.stack([before[first], after[last]])
-
-
-def _shortest(
-    steps: Sequence[FloatArray], *, closed: bool
-) -> tuple[list[int] | None, int, NDArray[np.bool_]]:
-    """Return which posture to take at each point so that the costs are least.
-
-    Args:
-        steps: For each interval the cost from each posture at its start to each at its end; infinite where
-            there is no way.
-        closed: Whether the last posture is to be the first one.
-
-    Returns:
-        The postures, None where there is no way; which interval no way passes; and which postures at its
-        start ways get to.
-    """
-    best: tuple[float, list[int] | None] = math.inf, None
-    farthest, reached = 0, np.ones(len(steps[0]), dtype=np.bool_)
-    for first in range(len(steps[0])) if closed else (None,):
-        begins = np.arange(len(steps[0]))
-        cost = np.where((begins == first) if closed else (begins >= 0), 0.0, np.inf)
-        before = []
-        for number, step in enumerate(steps):
-            onward = cost[:, None] + step
-            last_but_one = first is not None and number == len(steps) - 1
-            ends = onward[:, first] if last_but_one else onward
-            if not np.isfinite(ends).any():
-                if number >= farthest:
-                    farthest, reached = number, np.isfinite(cost)
-                break
-            before.append(np.argmin(onward, axis=0))
-            cost = np.min(onward, axis=0)
-        else:
-            last = int(np.argmin(cost)) if first is None else first
-            if cost[last] < best[0]:
-                taken = [last]
-                for choice in reversed(before):
-                    taken.append(int(choice[taken[-1]]))
-                best = float(cost[last]), taken[::-1]
-    return best[1], farthest, reached

@@ -13,7 +13,7 @@ import numpy as np
 
 from synth.checks import refuse_unless
 from synth.robot import turned
-from synth.synthesis.check import Surroundings, joints_reaching
+from synth.synthesis.check import Surroundings, cheapest_chain, joints_reaching
 from synth.synthesis.wanted.design import Design
 from synth.synthesis.wanted.margins import joint_shortfalls
 from synth.synthesis.wanted.motion import Motion, travel_of
@@ -72,18 +72,11 @@ def routed(
     postures = joints_reaching(task, design.arm, design.verification)
     ways = _WaysAround(task, design.arm, is_up).ways(postures)
     cramped = [_CRAMPED * joint_shortfalls(task.robot, joints) for joints in postures]
-    # To each posture of a target the least cost so far, rad, and which postures are taken on the way there.
-    best: list[tuple[float, tuple[int, ...]]]
-    best = [(float(cost), (index,)) for index, cost in enumerate(cramped[0])]
-    for step, costs in enumerate(cramped[1:]):
-        best = [
-            min(
-                (cost + _cost(ways[step][taken[-1], there]) + float(costs[there]), (*taken, there))
-                for cost, taken in best
-            )
-            for there in range(len(costs))
-        ]
-    _, chosen = min(best)
+    steps = [
+        np.array([[_cost(some[here, there]) for there in range(len(costs))] for here in range(count)]) + costs
+        for some, costs, count in zip(ways, cramped[1:], map(len, postures), strict=False)
+    ]
+    chosen = cheapest_chain(cramped[0], steps).taken
     names = [target.name for target in task.targets]
     found = (ways[step][pair] for step, pair in enumerate(itertools.pairwise(chosen)))
     motions = tuple(Motion(*pair, way) for pair, way in zip(itertools.pairwise(names), found, strict=True))
