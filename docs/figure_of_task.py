@@ -67,7 +67,15 @@ def draw_arm(axes: Axes3D, arm: Arm, joints: np.ndarray, reached: np.ndarray) ->
 
 def draw_targets(axes: Axes3D, solution: Solution, *, named: bool) -> np.ndarray:
     """Draw the targets, those missed as crosses with the way that is missing; return their points, mm."""
+    for path in solution.task.paths:
+        line = 1e3 * path.at(path.parameters(400))
+        axes.plot(*line.T, color="black", linewidth=2.5, zorder=8)
+        if named:
+            axes.text(*(line[len(line) // 2] + [22.0, 0.0, 28.0]), path.name, fontsize=NAME_SIZE, zorder=9)
+    followed = solution.task.path_of_targets >= 0
     for index, target in enumerate(solution.targets, start=1):
+        if followed[index - 1]:
+            continue
         position, reached = 1e3 * target.position, 1e3 * target.reached
         marker, colour = ("o", "black") if target.within_tolerance else ("X", RED)
         axes.plot(*position[:, None], marker, color=colour, markersize=7, zorder=8)

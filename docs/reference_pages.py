@@ -25,7 +25,7 @@ LENGTHS = [
     "position", "tolerance", "center", "radius", "size", "from", "to", "length", "P1",
     "P2", "P3", "P4", "P5", "d12", "d13", "d14", "d15", "d23",
     "d24", "d25", "d34", "d35", "d45", "floor", "min_bend_radius", "diameter", "tip_offset",
-    "rounding", "sigma", "radii", "margin", "point",
+    "rounding", "sigma", "radii", "margin", "point", "waypoints",
 ]  # fmt: skip
 # Parts of a solution that have a page of their own, or are described in the same file already.
 ELSEWHERE = ("task.", "releases[].task.", "releases[].design.", "alternatives[].")
@@ -34,14 +34,14 @@ UNITS = (
     | dict.fromkeys(
         ("yaw_deg", "rpy_deg", "tolerance_deg", "joint1_deg", "base", "second", "max_total_bend_deg"), "deg"
     )
-    | {"curvature": "1/length"}
+    | {"curvature": "1/length", "speed": "length/s"}
 )
 PLAIN = [  # keys of words, counts and parts, which have no unit
     "synth", "name", "length_unit", "robot", "targets", "weight", "surface", "points", "topology",
     "objective", "obstacles", "sphere", "box", "capsule", "current", "arcs", "markers", "link",
     "rigid_link", "joint_limits_deg", "intended", "distances", "configurations", "choices", "approach",
     "direction", "mesh", "cylinder", "torus", "rectangle", "disc", "plane", "pose", "region", "side", "coverage",
-    "axis", "normal", "along",
+    "axis", "normal", "along", "path", "csv", "closed", "interpolation",
 ]  # fmt: skip
 
 
@@ -127,6 +127,15 @@ length_unit: mm
 robot: malleable-2dof
 surface: [{mesh: bowl.stl, length_unit: mm, tolerance: 3}]
 """
+TASK_PATHS = """\
+synth: 1
+name: a belt and a seam
+length_unit: mm
+robot: malleable-2dof
+path:
+  - {name: belt, waypoints: [[420, -250, 220], [420, 250, 220]], tolerance: 5, speed: 100}
+  - {name: seam, csv: seam.csv, closed: true, interpolation: spline, tolerance: 5}
+"""
 ROBOT = """\
 name: my robot
 length_unit: mm
@@ -169,8 +178,8 @@ configurations:
 PAGES = (
     FilePage(
         "task-file", "Task files",
-        "A task file says what `synth solve` shall reach, with which robot, and what is in the way. Where there is a `surface`,\n`targets` may be left out; what `robot` holds is on [a page of its own](robot-file.md).",
-        TaskFile, (TASK, TASK_MARKERS, TASK_RANGE, TASK_CHOICES, TASK_SURFACES, TASK_MESH),
+        "A task file says what `synth solve` shall reach, with which robot, and what is in the way. Where there is a `surface` or\na `path`, `targets` may be left out; what `robot` holds is on [a page of its own](robot-file.md).",
+        TaskFile, (TASK, TASK_MARKERS, TASK_RANGE, TASK_CHOICES, TASK_SURFACES, TASK_MESH, TASK_PATHS),
     ),
     FilePage(
         "robot-file", "Robot files",

@@ -10,6 +10,7 @@ import numpy as np
 from oracle import SLACK, OracleArm
 from pydantic import BaseModel, ConfigDict, Field
 from ruamel.yaml import YAML
+from scipy.spatial import cKDTree
 
 import synth
 from synth.robot import BasePose
@@ -50,7 +51,8 @@ class RigidLink(Strict):
 class Planted(Strict):
     arcs: list[Bend]
     rigid_link: RigidLink | None = None
-    joints_deg: dict[str, Pair]
+    joints_deg: dict[str, Pair] = {}
+    waypoint_joints_deg: list[Pair] = []
     within: float
 
 
@@ -150,6 +152,7 @@ def broken_facts(facts, task, solution):
         *directions_broken(task, arm, joints),
         *_misses_broken(task, arm, content["targets"], joints),
         *(_clearances_broken(task, arm, content["targets"]) if task.obstacles else ()),
+        *_paths_broken(task, arm, content["paths"] or []),
         *_numbers_broken(facts, measured(task, arm, joints), sweep(task, arm)),
     ]
 
@@ -177,6 +180,27 @@ def _numbers_broken(facts, numbers, swept):
         off = np.abs(swept[:, 2] - plane.height).max()
         if not off <= plane.within:
             yield f"the workspace is {off:.3g} mm off the plane"
+
+
+def _paths_broken(task, arm, told):
+    """Follow the joint angles that are told along each path, seven of them between each two."""
+    for path, followed in zip(task.paths, told, strict=True):
+        joints, points = np.array(followed["joints"]), np.array(followed["points"])
+        share = np.linspace(0.0, 1.0, 8)[:, None, None]
+        between = joints[:-1] + share * np.diff(joints, axis=0)
+        fine = path.at(np.linspace(0.0, path.ends[-1], 100_001))
+        along = cKDTree(fine)
+        # P5 may be nearer to a point of the path other than its own, never farther from all.
+        off = along.query(arm.to_task(arm.end_effector(between)).reshape(-1, 3))[0].max()
+        stated = max(followed["largest"], 1e-6)
+        if not off - 1e-5 <= stated <= path.tolerance:
+            yield f"{path.name} is left by {off}, stated {stated}"
+        if np.abs(np.diff(joints, axis=0)).max() > 0.2:
+            yield f"{path.name} is followed with a jump"
+        if along.query(points)[0].max() > 1e-5 or cKDTree(points).query(fine)[0].max() > 0.02:
+            yield f"{path.name} is not followed all along"
+        if limits_broken(task, arm, joints[:: max(len(joints) // 50, 1)]):
+            yield f"{path.name} is not clear all along"
 
 
 def _clearances_broken(task, arm, targets):

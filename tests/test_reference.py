@@ -58,6 +58,7 @@ def test_the_keys_are_those_of_the_schema():
 )
 def test_the_examples_of_task_and_robot_files_are_read(text, tmp_path):
     (tmp_path / "scan.csv").write_text("x,y,z\n" + "".join(f"{400 + i},0,300\n" for i in range(9)))
+    (tmp_path / "seam.csv").write_text("400,0,300\n420,90,300\n380,90,320\n")
     if "bowl.stl" in text:
         trimesh = pytest.importorskip("trimesh")
         trimesh.creation.icosphere(radius=400.0).export(tmp_path / "bowl.stl")

@@ -33,7 +33,7 @@ def sampled_lines(design: Design) -> list[str]:
 def met_tolerances(task: Task, design: Design) -> list[str]:
     """Return which tolerances the nearest shape found would meet, as far as that is known."""
     check = design.verification
-    if check.between or check.followed:  # nothing is certain of what is between the samples
+    if check.between or task.paths:  # nothing is certain of what is between the samples
         return []
     misses = [*check.misses[task.surface_of_targets < 0], *(each.largest for each in check.coverings)]
     return [f"tolerances of {rounded_up(max(misses), digits=2)} mm would be met by the nearest shape found"]
