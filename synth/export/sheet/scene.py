@@ -37,6 +37,7 @@ class Scene:
         targets: Positions of the targets, shape (n, 3).
         reached: Whether each of them is within its tolerance.
         labels: A label for each target, or "" for those that have none.
+        path_of: Of which path each target is a sample, shape (n,); -1 for any other.
         base: P1 and P2, shape (2, 3).
         floor: Height of the floor, or None.
         obstacles: Name and solid of each obstacle that is near, in the task frame and in m.
@@ -51,6 +52,7 @@ class Scene:
     targets: FloatArray
     reached: Sequence[bool]
     labels: Sequence[str]
+    path_of: NDArray[np.intp]
     base: FloatArray
     floor: float | None
     obstacles: Sequence[tuple[str, Solid]]
@@ -82,6 +84,7 @@ class Scene:
             targets=1e3 * task.table.positions,
             reached=reached,
             labels=labels,
+            path_of=task.path_of_targets,
             base=1e3 * base.to_task([[0.0, 0.0, 0.0], [0.0, 0.0, task.robot.d12]]),
             floor=None if task.floor_height is None else 1e3 * task.floor_height,
             obstacles=[],
@@ -102,11 +105,14 @@ class Scene:
 
     @property
     def drawn(self) -> NDArray[np.bool_]:
-        """Which targets are drawn, shape (n,): those with a label, and of many others an even choice."""
+        """Which targets have a mark, shape (n,): those with a label, and of many others an even choice.
+
+        Of paths, which are lines, only samples that are missed have one.
+        """
         chosen = np.array([bool(label) for label in self.labels])
         step = -(-len(chosen) // MOST_DRAWN)
-        chosen[::step] = True
-        return chosen
+        others = np.arange(len(chosen)) % step == 0
+        return np.asarray(chosen | (others & ~((self.path_of >= 0) & np.array(self.reached, dtype=bool))))
 
     @property
     def bounds(self) -> FloatArray:

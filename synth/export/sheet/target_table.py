@@ -22,12 +22,20 @@ if TYPE_CHECKING:
 _PITCH = 3.6  # mm
 _SIZE = 7.5  # pt
 _MOST_TARGETS = 7
-_NAME = 32.0  # mm
+_NAME = 30.0  # mm
 
 
 def listed_targets(solution: Solution) -> Sequence[int]:
-    """Return the targets that have a line on the sheet, in their order: the worst ones if many."""
-    count = len(solution.task.targets)
+    """Return the targets that have a line on the sheet, in their order: the worst ones if many.
+
+    Of paths that are followed their ends have one, and no other sample.
+    """
+    task, count = solution.task, len(solution.task.targets)
+    if solution.found and task.paths:
+        path = np.append(task.path_of_targets, -1)
+        ends = (path[:-1] >= 0) & ((path[:-1] != np.roll(path, 1)[:-1]) | (path[:-1] != path[1:]))
+        if np.count_nonzero(chosen := task.is_of_its_own | ends) <= _MOST_TARGETS:
+            return np.flatnonzero(chosen).tolist()
     if count <= _MOST_TARGETS or not solution.designs:
         return range(min(count, _MOST_TARGETS))
     return sorted(worst_targets(solution.task, solution.best.verification, _MOST_TARGETS).tolist())
@@ -48,6 +56,7 @@ def target_table(page: Page, x: float, y: float, solution: Solution) -> float:
     if len(listed) < len(task.targets):
         count = f"{len(listed)} of {len(task.targets)}"
         heading = f"Targets, worst {count}" if results else f"{count} targets"
+        heading = "Targets, path ends" if solution.found and task.paths else heading
     page.text(x, y, heading, 9.5, weight="bold")
     heads = [("miss", 56.0), ("of, mm", 68.0)]
     if solution.found:
@@ -58,7 +67,7 @@ def target_table(page: Page, x: float, y: float, solution: Solution) -> float:
     for row, index in enumerate(listed, start=1):
         target, line = task.targets[index], y + _PITCH * row + 0.6
         page.text(x, line, f"{index + 1}", _SIZE, weight="bold")
-        page.text(x + 6.0, line, shortened(target.name, _NAME, _SIZE), _SIZE)
+        page.text(x + 8.0, line, shortened(target.name, _NAME, _SIZE), _SIZE)
         default = "*" if target.tolerance == DEFAULT_TOLERANCE else ""
         page.text(x + 68.0, line, f"{rounded_down(target.tolerance, digits=2)}{default}", _SIZE, ha="right")
         if results is None:

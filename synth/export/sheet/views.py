@@ -123,6 +123,8 @@ def _draw_axis(axes: Axes, points: FloatArray, pick: list[int], labels: Labels) 
 def _draw_targets(axes: Axes, points: FloatArray, scene: Scene, labels: Labels) -> None:
     """Draw the targets: a filled circle where one is reached, a cross where it is missed."""
     drawn, reached = scene.drawn, np.array(scene.reached, dtype=bool)
+    for path in range(int(scene.path_of.max(initial=-1)) + 1):
+        axes.plot(*points[scene.path_of == path].T, color=TARGET, linewidth=1.6, zorder=7)
     for some, marker, size in ((drawn & reached, "o", 4.5), (drawn & ~reached, "X", 6.0)):
         axes.plot(
             *points[some].T,
