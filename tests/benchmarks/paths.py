@@ -75,10 +75,11 @@ def main():
             assert off <= told <= task.paths[0].tolerance, (kind, seed, off, told)
             ratios.append(told / off)
             steps.append(step)
+        ratio, step = (max(each, default=np.nan) for each in (ratios, steps))
         print(
-            f"{kind:>14}: {met} of {len(seeds)} followed; bound over what is seen at most "
-            f"{max(ratios, default=np.nan):.3f}; largest step "
-            f"{np.degrees(max(steps, default=np.nan)):.1f} deg; {np.median(times):.2f} s, 95 % {np.quantile(times, 0.95):.2f} s of a processor",
+            f"{kind:>14}: {met} of {len(seeds)} followed; bound over what is seen at most {ratio:.3f}; "
+            f"largest step {np.degrees(step):.1f} deg; median {np.median(times):.2f} s, "
+            f"95 % {np.quantile(times, 0.95):.2f} s of a processor",
             *(f"\n    not: {each}" for each in missed),
             flush=True,
         )
