@@ -15,6 +15,7 @@ import numpy as np
 
 from synth.checks import refuse_unless
 from synth.rounding import rounded_up
+from synth.synthesis.base_moved import base_moved
 from synth.synthesis.check import verify
 from synth.synthesis.relaxed_limits import limits_of, without_limits
 from synth.synthesis.solution import Release, Solution
@@ -25,20 +26,14 @@ from synth.watch import Watch
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from synth.arrays import FloatArray
     from synth.synthesis.relaxed_limits import Limit
     from synth.synthesis.wanted import Design
-    from synth.task import Task
     from synth.watch import Progress
 
 # How far a limit is relaxed, as a share of the most, and how many starts are polished then.
 _RELAXED = ((0.04, 8), (0.25, 8), (1.0, 6))
 _RESOLUTION = 0.03  # of an amount
 _NOTHING = 1e-6  # of a limit
-_HALVINGS = 6
-_BASE_STEPS = 12
-_BASE_DIGITS = (1, 2, 3)  # decimals of a millimetre; the more the nearer to what was found to do
-_FARTHEST_BASE = 1.0  # m
 
 
 def explain(
@@ -66,11 +61,13 @@ def explain(
     if solution.found:
         return solution
     task, places = solution.task, solution.task.places
-    # Of a base that is free it is asked what blocks the task where it stands; `_base_moved` looks elsewhere.
+    # Of a base that is free it is asked what blocks the task where it stands; `base_moved` looks elsewhere.
     solution = replace(solution, task=task.standing_at(task.base))
     # What is begun is still verified when the time is up, which takes as long as it took before.
     watch = Watch(max(time_limit - solution.time.verifying, 0.0), stop=stop, report=progress)
     found, limits = [], tuple(limits_of(solution.task))
+    # Of a surface it is mostly the base; else all around it is searched only where nothing else helps.
+    moved = _base(solution, watch, far=True) if solution.task.surfaces else None
     looked_at = []
     for limit in limits:
         watch.tell(phase=f"relaxing: {limit.name}")
@@ -85,8 +82,7 @@ def explain(
         if not watch.is_up():
             looked_at.append(limit.name)
     found.sort(key=lambda release: release.share)
-    watch.tell(phase="moving the base")
-    moved = None if watch.is_up() else _base_moved(solution, watch)
+    moved = _base(solution, watch, far=not found) if not solution.task.surfaces else moved
     releases = tuple(found if moved is None else [*found, moved])
     watch.tell(phase="relaxing all limits together")
     notes = [] if releases or watch.is_up() else [_why_none_does(solution, watch)]
@@ -94,6 +90,11 @@ def explain(
         notes = [_how_far(looked_at, [limit.name for limit in limits])]
     notes = [*solution.notes, *notes]
     return replace(solution, task=task, releases=releases, notes=tuple(notes), explained=True)
+
+
+def _base(solution: Solution, watch: Watch, *, far: bool) -> Release | None:
+    watch.tell(phase="moving the base")
+    return None if watch.is_up() else base_moved(solution, watch, far=far)
 
 
 def _how_far(looked_at: Sequence[str], names: Sequence[str]) -> str:
@@ -177,52 +178,3 @@ def _needed(limit: Limit, design: Design, most: float, watch: Watch) -> float:
         else:
             too_little = amount
     return enough
-
-
-def _base_moved(solution: Solution, watch: Watch) -> Release | None:
-    """Move the base by what targets are missed on average, again and again, then back as far as possible.
-
-    With its joints as they are, an arm whose base moves takes the end effector along.
-    """
-    task = solution.task
-
-    def moved(shift: FloatArray) -> Task:
-        base = replace(task.base, position=task.base.position + shift)
-        return replace(task, base=base, floor=task.floor_height)
-
-    shift, designs = np.zeros(3), solution.designs[:1]
-    for _ in range(_BASE_STEPS):
-        if not designs or watch.is_up() or np.linalg.norm(shift) > _FARTHEST_BASE:
-            return None
-        check = designs[0].verification
-        shift = shift + np.mean(task.table.positions - check.reached, axis=0)
-        followed = follow(moved(shift), designs, watch=watch.aside())
-        designs = followed.designs
-        if followed.found:
-            break
-    else:
-        return None
-    too_little, enough = 0.0, 1.0
-    for _ in range(_HALVINGS):
-        if watch.is_up():
-            break
-        part = 0.5 * (too_little + enough)
-        followed = follow(moved(part * shift), designs, watch=watch.aside())
-        if followed.found:
-            enough, designs = part, followed.designs
-        else:
-            too_little = part
-    shift = enough * shift
-    for digits in _BASE_DIGITS:  # what is told is what does: that place, not one that rounds to it
-        told = np.round(1e3 * shift, digits) / 1e3
-        followed = follow(moved(told), designs, watch=watch.aside())
-        if followed.found:
-            shift, designs = told, followed.designs
-            break
-    distance = float(np.linalg.norm(shift))
-    x, y, z = (f"{1e3 * each:z.{digits}f}" for each in shift)
-    return Release(
-        "base", distance, distance / task.robot.link.length.upper,
-        f"the base moved by {rounded_up(distance)} mm (x {x}, y {y}, z {z} mm)",
-        designs[0], moved(shift),
-    )  # fmt: skip

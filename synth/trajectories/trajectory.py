@@ -13,7 +13,8 @@ import numpy as np
 from synth.arrays import FloatArray, frozen, frozen_value
 from synth.checks import refuse_unless, wrong_number
 from synth.errors import InputError, Mistake, SynthError
-from synth.synthesis import Solution, motions
+from synth.synthesis import MOST_MOTIONS, Solution, motions
+from synth.trajectories.along_path import differences, timed
 from synth.trajectories.profile import Profile
 
 if TYPE_CHECKING:
@@ -99,10 +100,11 @@ def trajectory(
     pause: float = 0.0,
     period: float = 0.01,
 ) -> Trajectory:
-    """Return a motion of the best shape through all targets, in the order of the task.
+    """Return a motion of the best shape through all targets, in the order of the task, or along its path.
 
     It follows the ways of the solution, which are within the joint limits and clear of everything, and
-    rests where they turn; so it is clear all along.
+    rests where they turn; so it is clear all along. A path is followed from rest to rest, no faster than it
+    asks for.
 
     Args:
         solution: A solution whose best shape has all ways.
@@ -117,10 +119,12 @@ def trajectory(
     Raises:
         InputError: An argument is wrong.
         NotFoundError: There is no shape.
-        SynthError: A way is missing: then no motion is known to be clear.
+        SynthError: A way is missing, or there is more than one path: then no motion is known to be clear.
     """
     _check(solution, speed=speed, acceleration=acceleration, pause=pause, period=period)
     design = solution.best
+    if solution.task.paths:
+        return _along(solution, np.full(2, speed), np.full(2, acceleration), period)
     ways = motions(solution.task, design)
     for way in ways:
         if not way.found:
@@ -138,6 +142,35 @@ def trajectory(
         tables.append(_rest(way.joints[-1], now, pause))
         now += pause
     return _joined(tables, stops)
+
+
+def has_trajectory(solution: Solution) -> bool:
+    """Whether a motion is known to be clear: along one path, or through all of not too many targets."""
+    task, design = solution.task, solution.best
+    if not task.paths:
+        few = len(task.targets) <= MOST_MOTIONS  # of more nobody looked for ways
+        return few and all(way.found for way in motions(task, design))
+    told = design.verification.followed
+    return len(told) == 1 and told[0].met and not task.is_of_its_own.any() and not task.surfaces
+
+
+def _along(solution: Solution, speeds: FloatArray, rates: FloatArray, period: float) -> Trajectory:
+    """Return a motion along the one path of a task."""
+    if not has_trajectory(solution):
+        raise SynthError("a trajectory is known along one path that is followed, and nothing beside it")
+    (path,) = solution.best.verification.followed
+    wanted = math.inf if path.speed is None else path.speed
+    knots = timed(path.joints, path.lengths, wanted, speeds, rates)
+    between, accelerations = differences(path.joints, knots)
+    velocities = np.vstack([np.zeros(2), 0.5 * (between[1:] + between[:-1]), np.zeros(2)])
+    parts = np.ceil(np.diff(knots) / period).astype(int)
+    number = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+    inside = np.repeat(knots[:-1], parts) + number * np.repeat(np.diff(knots) / parts, parts)
+    times = np.append(inside, knots[-1])
+    columns = np.column_stack([path.joints, velocities, accelerations]).T
+    rows = np.stack([np.interp(times, knots, column) for column in columns], axis=-1)
+    stops = {f"{path.name}, start": 0.0, f"{path.name}, end": float(times[-1])}
+    return Trajectory(times, rows[:, :2], rows[:, 2:4], rows[:, 4:], stops)
 
 
 def _check(solution: Solution, **given: float) -> None:

@@ -15,8 +15,7 @@ from synth.export.planners.symbolic import kinematics_c_code
 from synth.export.planners.urdf import TUBE, srdf_bytes, urdf_bytes
 from synth.export.planners.xrdf import xrdf_bytes
 from synth.robot import Workspace
-from synth.synthesis import MOST_MOTIONS, motions
-from synth.trajectories import trajectory
+from synth.trajectories import has_trajectory, trajectory
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -28,9 +27,8 @@ _SPACING = math.radians(3.0)  # of the mesh of a workspace, in each joint
 
 def kinds_of(solution: Solution) -> tuple[str, ...]:
     """Return the kinds of files that there can be of a solution: where ways are missing no trajectory."""
-    few = len(solution.task.targets) <= MOST_MOTIONS  # of more nobody looked for ways
-    has_ways = few and all(way.found for way in motions(solution.task, solution.best))
-    return tuple(kind for kind in KINDS if has_ways or kind != "trajectory")
+    has_one = has_trajectory(solution)
+    return tuple(kind for kind in KINDS if has_one or kind != "trajectory")
 
 
 def planner_files(solution: Solution, kinds: Iterable[str]) -> dict[str, bytes]:
