@@ -14,7 +14,7 @@ from synth.guide import solution_text
 from synth.robot import PRESETS
 from synth.synthesis import blocking, explain, help_told, solve, verify
 from synth.synthesis.solve import follow
-from synth.task import PointTarget, Task, load_task
+from synth.task import PointTarget, Task, load_task, parse_task
 from synth.watch import Watch
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
@@ -113,7 +113,7 @@ def test_where_no_limit_helps_it_says_so_and_how_near_any_surface_passes(monkeyp
     assert not solution.found
     # Each limit on its own is what other tests are about; here none helps.
     monkeypatch.setattr(blocking, "_released", lambda *_: None)
-    monkeypatch.setattr(blocking, "_base_moved", lambda *_: None)
+    monkeypatch.setattr(blocking, "base_moved", lambda *_, **__: None)
     explained = explain(solution)
     assert explained.releases == ()
     (note,) = explained.notes
@@ -132,7 +132,7 @@ def test_where_no_limit_helps_it_says_so_and_how_near_any_surface_passes(monkeyp
 def test_that_no_surface_passes_is_called_proven_only_where_algebra_proves_it(monkeypatch):
     solution = solved(six_targets_of_no_arm())
     monkeypatch.setattr(blocking, "_released", lambda *_: None)
-    monkeypatch.setattr(blocking, "_base_moved", lambda *_: None)
+    monkeypatch.setattr(blocking, "base_moved", lambda *_, **__: None)
     assert "none was found that passes through all the targets" in explain(solution).notes[0]
     monkeypatch.setattr(blocking, "exact_arms", lambda _: ())
     assert "by algebra none passes exactly through all the targets" in explain(solution).notes[0]
@@ -141,7 +141,7 @@ def test_that_no_surface_passes_is_called_proven_only_where_algebra_proves_it(mo
 def test_where_no_shape_at_all_is_left_it_says_that_too(monkeypatch):
     solution = solved(six_targets_of_no_arm())
     monkeypatch.setattr(blocking, "_released", lambda *_: None)
-    monkeypatch.setattr(blocking, "_base_moved", lambda *_: None)
+    monkeypatch.setattr(blocking, "base_moved", lambda *_, **__: None)
     monkeypatch.setattr(blocking, "follow", lambda *_, **__: replace(solution, designs=()))
     assert explain(solution).notes[0].endswith("nor any shape at all with all limits relaxed together")
 
@@ -149,7 +149,7 @@ def test_where_no_shape_at_all_is_left_it_says_that_too(monkeypatch):
 def test_where_several_limits_block_together_it_says_that(monkeypatch):
     task = load_task(PROBLEMS / "out-of-reach/task.yaml")
     monkeypatch.setattr(blocking, "_released", lambda *_: None)
-    monkeypatch.setattr(blocking, "_base_moved", lambda *_: None)
+    monkeypatch.setattr(blocking, "base_moved", lambda *_, **__: None)
     (note,) = explain(solved(task)).notes
     assert "with all limits relaxed together the task is met" in note
 
@@ -162,3 +162,18 @@ def test_nothing_is_begun_for_which_the_time_is_shorter_than_verifying_took():
     assert len(set(told)) <= 3  # the first limit, and what would come after all of them
     assert not explained.releases
     assert "stopped early: 0 of" in explained.notes[-1]
+
+
+def test_where_the_base_would_have_to_stand_for_a_dome_is_told(monkeypatch):
+    monkeypatch.setattr(blocking, "limits_of", lambda _: [])  # of these other tests tell
+    dome = {
+        "sphere": {"center": [150, 100, 0], "radius": 520},
+        "region": [{"sphere": {"center": [410, 100, 450], "radius": 100}}],
+    }
+    task = parse_task(
+        {"synth": 1, "length_unit": "mm", "robot": "malleable-2dof", "floor": None, "surface": dome}
+    )
+    (release,) = explain(solve(task, alternatives=0, time_limit=3.0)).releases
+    assert release.design.verification.found
+    np.testing.assert_allclose(release.design.arm.base.position[:2], [0.15, 0.1], atol=5e-3)
+    assert re.match(r"the base at \(1[45]\d\.\d, (9\d|10\d)\.\d, ", release.sentence)

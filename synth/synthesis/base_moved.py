@@ -25,7 +25,6 @@ _BASE_DIGITS = (1, 2, 3)  # decimals of a millimetre; the more the nearer to wha
 _FARTHEST_BASE = 1.0  # m
 _HALVINGS = 6
 _AROUND = 0.4  # m either way, where a base is looked for that nothing nearby leads to
-_SEARCHED = 20.0  # s
 
 
 def base_moved(solution: Solution, watch: Watch, *, far: bool) -> Release | None:
@@ -98,7 +97,7 @@ def _moved_far(solution: Solution, watch: Watch) -> Release | None:
     x, y, z = (Interval(float(c) - _AROUND, float(c) + _AROUND) for c in task.base.position)
     places = BaseRange(x, y, z, yaw=Interval(-math.pi, math.pi))
     free = replace(task, places=places, floor=task.floor_height)
-    found = placed(free, solution.seed, watch.within(_SEARCHED), 0).solution()
+    found = placed(free, solution.seed, watch.aside(), 0).solution()
     if not found.found:
         return None
     base = found.best.arm.base
