@@ -11,7 +11,6 @@ from synth.synthesis.check import proven_between, verify_targets
 from synth.synthesis.many_targets import least_worst, ranked
 from synth.synthesis.search import followed_between
 from synth.synthesis.starts import most_covered, random_part, refined_for_all
-from synth.synthesis.turning import turned_designs
 from synth.synthesis.wanted import Design, best_of
 from synth.task import Objective
 
@@ -32,6 +31,7 @@ _COVERING = 3  # shapes that are looked at where a part of a surface may be left
 _REWEIGHTED = 6  # times that outliers near the surface are left out
 _USUAL = 3.5  # times the median miss: of normal noise two in a hundred are missed more
 _ROUNDING = 1e-8  # m
+_TURNS = 24  # of a link about axis 1, that are tried where a path is not followed
 _CHOSEN_ANEW = 8  # times that what is covered best of a surface is chosen
 
 
@@ -171,12 +171,18 @@ def only_proven(task: Task, design: Design) -> Design:
 
 
 def _turned_to_follow(task: Task, design: Design, watch: Watch) -> tuple[Design, ...]:
-    """Return the first design with the link turned about axis 1 that follows every path, if one does."""
-    for turned in turned_designs(task, design, watch):
-        with watch.on("verifying"):
-            check = proven_between(task, turned.arm, turned.verification, watch)
-        if check.found:
-            return best_of(task, [replace(turned, verification=check)], watch.is_up)
+    """Return the first design with the link turned about axis 1 that follows every path, if one does.
+
+    The arm stands as before where joint 1 turns back by as much; what is another is its dead zone.
+    """
+    with watch.on("verifying"):
+        for angle in np.linspace(0.0, 2.0 * np.pi, _TURNS, endpoint=False)[1:]:
+            if watch.is_up():
+                break
+            arm = replace(design.arm, shape=design.arm.shape.turned(float(angle)))
+            check = verify_targets(task, arm)
+            if check.found and (check := proven_between(task, arm, check, watch)).found:
+                return best_of(task, [Design(arm, check)], watch.is_up)
     return ()
 
 
