@@ -8,11 +8,13 @@ from typing import Annotated, Literal
 
 import numpy as np
 from oracle import SLACK, OracleArm
+from oracle_kinematics import turned
 from pydantic import BaseModel, ConfigDict, Field
 from ruamel.yaml import YAML
 from scipy.spatial import cKDTree
 
 import synth
+from synth.geometry import Box
 from synth.robot import BasePose
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
@@ -110,12 +112,7 @@ def directions_broken(task, arm, joints):
     for target, (theta1, theta2) in zip(task.targets, joints, strict=True):
         if target.approach is None:
             continue
-        c, s = np.cos(theta1), np.sin(theta1)
-        turned = np.array([c * centre[0] - s * centre[1], s * centre[0] + c * centre[1], centre[2]])
-        base, yaw = task.base.position, task.base.yaw
-        c, s = np.cos(yaw), np.sin(yaw)
-        axis = np.array([c * turned[0] - s * turned[1], s * turned[0] + c * turned[1], turned[2]]) + base
-        pointing = arm.end_effector(np.array([[theta1, theta2]]))[0] - axis
+        pointing = arm.reached(np.array([[theta1, theta2]]))[0] - arm.to_task(turned(centre, theta1))
         angle = np.arccos(pointing @ target.approach.direction / np.linalg.norm(pointing))
         if angle > target.approach.tolerance + 1e-5:
             yield f"{target.name} is arrived at {np.degrees(angle):.3f} deg beside its direction"
@@ -124,6 +121,8 @@ def directions_broken(task, arm, joints):
 def limits_broken(task, arm, joints):
     """Return the limits that an arm breaks in itself or at a target, as sentences."""
     solids = [obstacle.solid for obstacle in task.obstacles]
+    if not task.base.is_upright and isinstance(task.floor, float):  # the floor is no height in the base frame
+        solids.append(Box([0.0, 0.0, task.floor - 50.0], [100.0, 100.0, 100.0]))
     breaches = [*arm.breaches_of_shape(task.floor_in_base)]
     for each in joints:
         breaches += arm.breaches_at(each, task.floor_in_base, solids)
@@ -146,13 +145,18 @@ def broken_facts(facts, task, solution):
         task = task.standing_at(stands)
     arm = OracleArm.stated(task, content)
     joints = np.array([target["joints"] for target in content["targets"]])
+    whole, place = task, {name: index for index, name in enumerate(task.table.names)}
+    of = [place[target["name"]] for target in content["targets"]]
+    if len(of) < len(place):  # of many the worst are told
+        task = task.asking_for(task.table.take(np.array(of)))
     return [
         *told,
         *limits_broken(task, arm, joints),
         *directions_broken(task, arm, joints),
         *_misses_broken(task, arm, content["targets"], joints),
         *(_clearances_broken(task, arm, content["targets"]) if task.obstacles else ()),
-        *_paths_broken(task, arm, content["paths"] or []),
+        *_paths_broken(whole, arm, content["paths"] or []),
+        *_surfaces_broken(whole, arm, content["surfaces"] or []),
         *_numbers_broken(facts, measured(task, arm, joints), sweep(task, arm)),
     ]
 
@@ -201,6 +205,20 @@ def _paths_broken(task, arm, told):
             yield f"{path.name} is not followed all along"
         if limits_broken(task, arm, joints[:: max(len(joints) // 50, 1)]):
             yield f"{path.name} is not clear all along"
+
+
+def _surfaces_broken(task, arm, told):
+    """Look at each surface at ten times the samples."""
+    for surface, covered in zip(task.surfaces, told, strict=True):
+        cells = surface.cells(10 * len(surface.samples))
+        points = cells.points[np.random.default_rng(0).permutation(len(cells))[:2500]]
+        misses = arm.misses(arm.closest(points), points)
+        share = float(np.mean(misses <= surface.tolerance))
+        if abs(share - covered["share"]) > 0.01 or share < surface.coverage - 0.01:
+            yield f"of {surface.name} {share:.3f} are covered, stated {covered['share']:.3f}"
+        between = covered["between"]
+        if between and surface.coverage == 1.0 and misses.max() > between["largest"] + SLACK:
+            yield f"{surface.name} is missed by {misses.max()} somewhere, stated {between['largest']}"
 
 
 def _clearances_broken(task, arm, targets):

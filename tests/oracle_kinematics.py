@@ -58,6 +58,8 @@ class OracleKinematics:
         d45: Distance from P4 to P5, m.
         position: P1 in the task frame, [3], m.
         yaw: Of the base frame in the task frame, rad.
+        pitch: Before that about its y axis, rad.
+        roll: Before both about its x axis, rad.
     """
 
     robot: object
@@ -67,6 +69,8 @@ class OracleKinematics:
     d45: float
     position: np.ndarray
     yaw: float
+    pitch: float = 0.0
+    roll: float = 0.0
 
     @classmethod
     def of(cls, arm) -> Self:
@@ -80,6 +84,8 @@ class OracleKinematics:
             arm.d45,
             np.array(base.position),
             base.yaw,
+            base.pitch,
+            base.roll,
         )
 
     @classmethod
@@ -94,6 +100,8 @@ class OracleKinematics:
             content["distances"]["45"],
             np.array(task.base.position),
             task.base.yaw,
+            task.base.pitch,
+            task.base.roll,
         )
 
     @property
@@ -169,10 +177,20 @@ class OracleKinematics:
         return turned(self.at_joint_2(theta2), theta1)
 
     def to_task(self, points):
-        return turned(points, self.yaw) + self.position
+        return np.asarray(points) @ self._leaning.T + self.position
 
     def to_base(self, points):
-        return turned(np.asarray(points) - self.position, -self.yaw)
+        return (np.asarray(points) - self.position) @ self._leaning
+
+    @cached_property
+    def _leaning(self):
+        """The axes of the base frame in the task frame, as columns [3, 3]."""
+        z, y, x = (
+            np.array([0.0, 0.0, self.yaw]),
+            np.array([0.0, self.pitch, 0.0]),
+            np.array([self.roll, 0.0, 0.0]),
+        )
+        return rotation(z) @ rotation(y) @ rotation(x)
 
     def reached(self, joints):
         """Return P5 [..., 3] in the task frame."""
