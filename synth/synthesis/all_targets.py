@@ -9,7 +9,7 @@ import numpy as np
 
 from synth.synthesis.check import proven_between, verify_targets
 from synth.synthesis.many_targets import least_worst, ranked
-from synth.synthesis.search import followed_between
+from synth.synthesis.search import led_to
 from synth.synthesis.starts import most_covered, random_part, refined_for_all
 from synth.synthesis.wanted import Design, best_of
 from synth.task import Objective
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 _VERIFIED_AT_MOST = 20_000
 _FIRST = 2_000  # of them are verified first, to see how long one takes
 _OF_TIME_LEFT = 0.8  # in which others are
-_LED_BETWEEN = 3  # times that shapes are led to where nothing is proven
+_LED_BETWEEN = 3  # times that shapes are led to what they miss, or where nothing is proven
+_A_FEW = 0.2  # share of the targets: of more a shape misses not only what is in a dead zone
 _PROVEN_BETWEEN = 3  # shapes that are told where surfaces and paths are to be looked at between samples
 _COVERING = 3  # shapes that are looked at where a part of a surface may be left
 _REWEIGHTED = 6  # times that outliers near the surface are left out
 _USUAL = 3.5  # times the median miss: of normal noise two in a hundred are missed more
 _ROUNDING = 1e-8  # m
-_TURNS = 24  # of a link about axis 1, that are tried where a path is not followed
 _CHOSEN_ANEW = 8  # times that what is covered best of a surface is chosen
 
 
@@ -135,6 +135,31 @@ def _without_outliers(task: Task, arm: Arm, watch: Watch) -> Arm:
     return arm
 
 
+def led_to_missed(part: Task, whole: WholeTask, seed: int, watch: Watch) -> WholeTask:
+    """Return designs that reach all targets, if where the best misses a few of them others do.
+
+    A part may say nothing of where joint 1 has its dead zone: what is missed there joins it.
+
+    Args:
+        part: The task of few targets that they were found for.
+        whole: The designs, with the task of all targets.
+        seed: Seed of the search.
+        watch: When it is up, the designs are left as they are.
+    """
+    task, best = whole.task, whole
+    for number in range(_LED_BETWEEN):
+        if not best.designs or best.unseen or task.is_partial or watch.is_up():
+            break
+        check = best.designs[0].verification
+        missed = ~np.array(check.within_tolerance)
+        if check.found or np.mean(missed) > _A_FEW:
+            break
+        with watch.on("solving"):
+            part, beside = led_to(part, best.designs, task.table.positions[missed], seed + number, watch)
+        best = for_all_targets(task, beside, seed, watch)
+    return best if best.designs and best.designs[0].verification.found else whole
+
+
 def proven_whole(part: Task, whole: WholeTask, seed: int, watch: Watch) -> WholeTask:
     """Return designs, one first whose surfaces and paths are proven between samples, if there is one.
 
@@ -153,10 +178,10 @@ def proven_whole(part: Task, whole: WholeTask, seed: int, watch: Watch) -> Whole
             break
         if not (led[0].verification.between or led[0].verification.followed):
             break
-        if led[0].verification.followed and (turned := _turned_to_follow(task, led[0], watch)):
-            return replace(whole, designs=turned)
+        unproven = [each.unproven for each in led[0].verification.between]
+        points = np.concatenate([np.empty((0, 3)), *unproven])
         with watch.on("solving"):
-            part, beside = followed_between(part, led, seed + number, watch)
+            part, beside = led_to(part, led, points, seed + number, watch)
         led = _proven_first(task, for_all_targets(task, beside, seed, watch).designs, watch)
     return replace(whole, designs=led if led and led[0].verification.found else proven)
 
@@ -168,22 +193,6 @@ def only_proven(task: Task, design: Design) -> Design:
     if (joined and not check.between) or (task.paths and not check.followed):
         return replace(design, verification=replace(check, reaches_all=False))
     return design
-
-
-def _turned_to_follow(task: Task, design: Design, watch: Watch) -> tuple[Design, ...]:
-    """Return the first design with the link turned about axis 1 that follows every path, if one does.
-
-    The arm stands as before where joint 1 turns back by as much; what is another is its dead zone.
-    """
-    with watch.on("verifying"):
-        for angle in np.linspace(0.0, 2.0 * np.pi, _TURNS, endpoint=False)[1:]:
-            if watch.is_up():
-                break
-            arm = replace(design.arm, shape=design.arm.shape.turned(float(angle)))
-            check = verify_targets(task, arm)
-            if check.found and (check := proven_between(task, arm, check, watch)).found:
-                return best_of(task, [Design(arm, check)], watch.is_up)
-    return ()
 
 
 def _proven_first(task: Task, designs: tuple[Design, ...], watch: Watch) -> tuple[Design, ...]:

@@ -15,6 +15,7 @@ from synth.errors import in_a_line
 from synth.synthesis.all_targets import (
     WholeTask,
     for_all_targets,
+    led_to_missed,
     only_proven,
     proven_whole,
     verified_in_time,
@@ -28,7 +29,7 @@ from synth.synthesis.solution import Solution, Status, message, note_on_ways, wh
 from synth.synthesis.wanted import Design, best_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from synth.robot import BasePlaces
     from synth.synthesis.bound import Bound
@@ -131,7 +132,8 @@ class Run:
                 *self.search.polishing.designs,
                 *changing_little(self.part, self.search.polishing.designs, self.seed, self.watch),
             ]
-            whole = self._whole(best_of(self.part, known, self.watch.is_up))
+            best = best_of(self.part, known, self.watch.is_up)
+            whole = self._whole(best if self.part is self.task else _and_others(best, known))
         if self.broke_off is not None and not whole.designs:
             with self.kept():
                 for one in best_of(self.part, self.search.polishing.designs)[:1]:
@@ -169,6 +171,7 @@ class Run:
         if self.part is not self.task:
             whole = for_all_targets(self.task, designs, self.seed, self.watch)
             self.search.polishing.blocked.extend(whole.blocked)
+            whole = led_to_missed(self.part, whole, self.seed, self.watch)
         return proven_whole(self.part, whole, self.seed, self.watch)
 
     def _verdict(self, whole: WholeTask) -> tuple[Status, tuple[str, ...]]:
@@ -190,6 +193,15 @@ class Run:
         status = Status.LIMIT if cut_short or whole.unseen else Status.BEST_EFFORT
         asked = replace(self.task, places=self.places)
         return status, why_no_better(asked, designs, self.search.polishing.blocked)
+
+
+def _and_others(best: tuple[Design, ...], known: Sequence[Design]) -> tuple[Design, ...]:
+    """Return designs, and behind them those that are like one of them for a part of the targets.
+
+    For all targets they may not be: one has its dead zone where no target is, or nearly so.
+    """
+    taken = {id(design.arm) for design in best}
+    return (*best, *(design for design in known if id(design.arm) not in taken))
 
 
 def bound_of_all(bound: Bound | None, task: Task, designs: tuple[Design, ...]) -> Bound | None:

@@ -17,6 +17,7 @@ from synth.task import Objective, PointTarget, TargetTable
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
+    from synth.arrays import FloatArray
     from synth.task import Task
     from synth.watch import Watch
 
@@ -27,7 +28,7 @@ ALTERNATIVES = 2  # shapes looked for after one was found, or else starts polish
 _LOOKED_AT = 4  # shapes that a person would want, for each alternative
 _ALTERNATIVES_THAT_MISS = 2  # likewise, at most, where no shape meets all targets
 _GAIN = 1e-3  # of the objective: the least that is worth another start
-_BETWEEN, _STARTS_BETWEEN = 20, 6  # points between samples that are searched with; starts polished
+_BETWEEN, _STARTS_BETWEEN = 20, 6  # points that join the targets of a search; starts polished then
 _LATE = 0.2  # s after the time is up, from when on not even unpolished starts are looked at
 
 
@@ -187,22 +188,21 @@ def _progress(polishing: Polishing, starts: int, at_most: int) -> dict[str, obje
     }
 
 
-def followed_between(
-    part: Task, designs: Sequence[Design], seed: int, watch: Watch
+def led_to(
+    part: Task, designs: Sequence[Design], points: FloatArray, seed: int, watch: Watch
 ) -> tuple[Task, list[Design]]:
-    """Return the part with points between samples of which nothing is proven, and shapes led there, too.
+    """Return the part with points that shapes miss, or of which nothing is proven, and shapes led there, too.
 
     Mostly a shape that covers all samples ends short of a surface's edge: there joint 1 has its dead zone.
-    Where all surfaces are covered, and paths are not followed, other shapes are looked for.
+    Without points other shapes are looked for.
 
     Args:
         part: The task of few targets that the shapes were found for.
-        designs: The shapes, with what is proven of them.
+        designs: The shapes.
+        points: The points in the task frame, shape (k, 3), m: of very many, some.
         seed: Seed of the random shapes.
         watch: Its time.
     """
-    unproven = [each.unproven for each in designs[0].verification.between]
-    points = np.concatenate([np.empty((0, 3)), *unproven])
     if not len(points):
         search = Search(part, seed + 1, watch, lambda: False)
         search.run(_STARTS_BETWEEN)
@@ -213,8 +213,7 @@ def followed_between(
         PointTarget(f"between the samples {first + number}", point, float(part.tolerances.min()))
         for number, point in enumerate(some, start=1)
     ]
-    table = part.table.followed_by(TargetTable.of(more))
-    task = part.asking_for(table)
+    task = part.asking_for(part.table.followed_by(TargetTable.of(more)))
     search = Search(task, seed, watch, lambda: False, alternatives=0)
     if not search.follow(designs):
         search.run(_STARTS_BETWEEN)

@@ -160,15 +160,6 @@ class LinkShape:
         _, within = arc_motion(self.curvatures[arc], s - starts[arc])
         return np.asarray(origins[arc] + np.einsum("...ij,...j->...i", rotations[arc], within))
 
-    def turned(self, angle: float) -> LinkShape:
-        """Return the shape turned about axis 1, with which the arm stands as before where joint 1 turns back.
-
-        Args:
-            angle: By how much, rad.
-        """
-        cosine, sine = math.cos(angle), math.sin(angle)
-        return LinkShape(self.curvatures @ np.array([[cosine, sine], [-sine, cosine]]), self.lengths)
-
     def centreline(self, spacing: float = 0.01) -> FloatArray:
         """Return points along the whole centreline, at most `spacing` m apart, ends included."""
         count = max(2, int(np.ceil(self.length / spacing)) + 1)
