@@ -46,6 +46,8 @@ class Certifier:
         keep: Checks a shape and puts it to the designs if it is possible.
         watch: Told of each step; when it is up, the proof ends with what there is.
         seed: Seed of the search.
+        known: The worst weighted miss of a shape with another rigid link or at another place, m: what is
+            worse than that need not be found, only excluded.
     """
 
     task: Task
@@ -54,6 +56,7 @@ class Certifier:
     keep: Callable[[Arm, FloatArray], Design]
     watch: Watch
     seed: int
+    known: float = math.inf
     _rng: np.random.Generator = field(init=False)
     _minimax: Task = field(init=False)
 
@@ -65,12 +68,8 @@ class Certifier:
 
     def certificate(self) -> Bound | None:
         """Return the bound; None where there is no proof for such a task."""
-        for design in sorted(self.designs, key=self._worst)[:_POLISHED]:
-            self._polish(design.arm, design.verification.joints)
-        if self._best() > _GAP:
-            # The shapes so far were searched for by the task's own objective, maybe another one.
-            for start in islice(start_points(self._minimax, self.seed, watch=self.watch), _STARTS):
-                self._polish(start.arm, start.joints)
+        if math.isinf(self.known):
+            self._search()
         return prove(
             self.task,
             self._best(),
@@ -81,13 +80,22 @@ class Certifier:
             improve=self._improve,
         )
 
+    def _search(self) -> None:
+        """Look for the shape of the least worst miss."""
+        for design in sorted(self.designs, key=self._worst)[:_POLISHED]:
+            self._polish(design.arm, design.verification.joints)
+        if self._best() > _GAP:
+            # The shapes so far were searched for by the task's own objective, maybe another one.
+            for start in islice(start_points(self._minimax, self.seed, watch=self.watch), _STARTS):
+                self._polish(start.arm, start.joints)
+
     def _worst(self, design: Design) -> float:
         """Return the worst weighted miss of a design, m."""
         tolerances = self.task.tolerances
         return float(np.max(design.verification.misses * (self.tightest / tolerances)))
 
     def _best(self) -> float:
-        return min(map(self._worst, self.designs), default=math.inf)
+        return min([self.known, *map(self._worst, self.designs)])
 
     def _best_misses(self) -> FloatArray:
         if not self.designs:

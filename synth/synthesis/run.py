@@ -19,7 +19,7 @@ from synth.synthesis.all_targets import (
     proven_whole,
     verified_in_time,
 )
-from synth.synthesis.bound import why_impossible
+from synth.synthesis.bound import Bound, why_impossible
 from synth.synthesis.many_targets import without_partial
 from synth.synthesis.present_shape import changing_little
 from synth.synthesis.proving import Certifier
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from synth.robot import BasePlaces
-    from synth.synthesis.bound import Bound
     from synth.task import Task
     from synth.watch import Watch
 
@@ -56,7 +55,8 @@ class Run:
         broke_off: What broke that nobody foresaw.
         notes: What else is to be said.
         places: Where the base could be made to stand; `task` has it at the one of these that was chosen.
-        elsewhere: Whether another of them may do what this one cannot.
+        elsewhere: Whether another place, of which there is no run, may do what this one cannot.
+        others: The runs at other places and with other rigid links, of which this one was chosen.
     """
 
     task: Task
@@ -70,6 +70,7 @@ class Run:
     notes: list[str] = field(default_factory=list)
     places: BasePlaces | None = None
     elsewhere: bool = False
+    others: tuple[Run, ...] = ()
 
     @contextmanager
     def kept(self) -> Iterator[None]:
@@ -95,6 +96,18 @@ class Run:
         return () if asked is None else why_impossible(asked)
 
     @property
+    def excluded(self) -> tuple[str, ...]:
+        """Why no shape can do the task with this place and rigid link, as far as that is proven."""
+        proven = self.bound is not None and self.bound.excludes
+        return self.impossible or ((self._bound.sentence,) if proven and self._bound is not None else ())
+
+    @property
+    def _bound(self) -> Bound | None:
+        """What is proven of all shapes, with whatever place and rigid link there is a choice of."""
+        bounds = [run.bound for run in (self, *self.others)]
+        return Bound.least_of([each for each in bounds if each is not None]) if all(bounds) else None
+
+    @property
     def kept_back(self) -> float:
         """Which share of the time the search leaves for looking at all targets."""
         count = len(self.task.targets)
@@ -109,19 +122,27 @@ class Run:
             self.notes.append("nothing was proven: which part of a surface is left is not bounded")
             return
         self.complete = True
+        runs, known, stopped = (self, *self.others), math.inf, False
         watch = self.watch.within(_PROOF_TIME)
-        certifier = Certifier(
-            self.part,
-            float(self.task.tolerances.min()),
-            self.search.polishing.designs,
-            self.search.polishing.keep,
-            watch,
-            self.seed,
-        )
-        with self.watch.on("proving"):
-            self.bound = certifier.certificate()
-        if watch.interrupted:
+        for number, run in enumerate(runs):
+            share = watch.within(watch.remaining / (len(runs) - number))
+            certifier = Certifier(
+                run.part,
+                float(run.task.tolerances.min()),
+                run.search.polishing.designs,
+                run.search.polishing.keep,
+                share,
+                run.seed,
+                known,
+            )
+            with self.watch.on("proving"):
+                run.bound = certifier.certificate()
+            known = known if run.bound is None else run.bound.best_found
+            stopped |= share.interrupted
+        if stopped:
             self.notes.append("the proof was stopped early: more time may prove more")
+        if self.elsewhere and self.bound is not None and self.bound.lower_bound > 0.0:
+            self.notes.append("what is proven holds for the place where the base was found to stand")
 
     def solution(self) -> Solution:
         """Rank what was found and say what it is worth."""
@@ -155,7 +176,7 @@ class Run:
             designs,
             self.search.starts,
             self.watch.timing(),
-            self.bound if self.part is self.task else bound_of_all(self.bound, task, designs),
+            self._bound if self.part is self.task else bound_of_all(self._bound, task, designs),
             notes=(*self.notes, *filter(None, [whole.note, no_time])),
             breakdown="".join(traceback.format_exception(self.broke_off)) if self.broke_off else "",
         )
@@ -178,10 +199,8 @@ class Run:
             return Status.FOUND, ()
         if self.broke_off is not None:
             return Status.FAILED, ()
-        if self.impossible and not self.elsewhere:
-            return Status.PROVEN_IMPOSSIBLE, self.impossible
-        if self.bound is not None and self.bound.excludes and not self.elsewhere:
-            return Status.PROVEN_IMPOSSIBLE, (self.bound.sentence,)
+        if all(run.excluded and not run.elsewhere for run in (self, *self.others)):
+            return Status.PROVEN_IMPOSSIBLE, self.excluded
         if self.search.polishing.breakdowns and not (
             self.search.polishing.designs or self.search.polishing.blocked
         ):
