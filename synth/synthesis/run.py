@@ -122,27 +122,32 @@ class Run:
             self.notes.append("nothing was proven: which part of a surface is left is not bounded")
             return
         self.complete = True
-        runs, known, stopped = (self, *self.others), math.inf, False
-        watch = self.watch.within(_PROOF_TIME)
-        for number, run in enumerate(runs):
-            share = watch.within(watch.remaining / (len(runs) - number))
-            certifier = Certifier(
-                run.part,
-                float(run.task.tolerances.min()),
-                run.search.polishing.designs,
-                run.search.polishing.keep,
-                share,
-                run.seed,
-                known,
-            )
-            with self.watch.on("proving"):
-                run.bound = certifier.certificate()
-            known = known if run.bound is None else run.bound.best_found
-            stopped |= share.interrupted
-        if stopped:
+        watch, stopped = self.watch.within(_PROOF_TIME), False
+        with self.watch.on("proving"):
+            own = self.certifier(watch)
+            known = own.search()
+            # What is not to be chosen is soon excluded, mostly; the time that is left is for what was.
+            for number, run in enumerate(self.others):
+                share = watch.within(watch.remaining / (len(self.others) + 1 - number))
+                run.bound = run.certifier(share).bound(known)
+                known = known if run.bound is None else run.bound.best_found
+                stopped |= share.interrupted
+            self.bound = own.bound(known)
+        if stopped or watch.interrupted:
             self.notes.append("the proof was stopped early: more time may prove more")
         if self.elsewhere and self.bound is not None and self.bound.lower_bound > 0.0:
             self.notes.append("what is proven holds for the place where the base was found to stand")
+
+    def certifier(self, watch: Watch) -> Certifier:
+        """Return what proves how little any shape can miss with this place and rigid link."""
+        return Certifier(
+            self.part,
+            float(self.task.tolerances.min()),
+            self.search.polishing.designs,
+            self.search.polishing.keep,
+            watch,
+            self.seed,
+        )
 
     def solution(self) -> Solution:
         """Rank what was found and say what it is worth."""

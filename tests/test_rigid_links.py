@@ -1,0 +1,293 @@
+"""A catalogue of rigid links: read, searched through, told first, held in files, and proven as a whole."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from planted import ROBOT, noisy
+from planted_rigid_links import CATALOGUE, NAMES, free_rigid_link, planted_rigid_link
+
+import synth
+from synth.export import solution_to_json
+from synth.guide import instructions, make_guide
+from synth.measurement import load_measurements
+from synth.robot import BaseChoices, BasePose, BaseRange, Interval, RigidLink, RigidLinkChoices
+from synth.synthesis import Bound, Status, run
+from synth.task import PointTarget, Task
+
+ROBOT_TEXT = """
+length_unit: mm
+d12: 58
+link: {{length: [550, 700], min_bend_radius: 110, diameter: 50}}
+d34: 49
+rigid_link: {}
+"""
+LISTS = "{d35: {one_of: [410, 455]}, d45: {one_of: [415, 460]}, diameter: 20}"
+PAIRS = "{one_of: [{d35: 410, d45: 415}, {name: long, d35: 455, d45: 460, diameter: 10}], diameter: 20}"
+
+
+def read(rigid_link: str, tmp_path) -> synth.Robot:
+    (tmp_path / "robot.yaml").write_text(ROBOT_TEXT.format(rigid_link))
+    return synth.load_robot(tmp_path / "robot.yaml")
+
+
+class TestFile:
+    def test_lists_of_lengths_are_read_in_pairs(self, tmp_path):
+        robot = read(LISTS, tmp_path)
+        assert robot.rigid_links == RigidLinkChoices(
+            ["rigid link 1", "rigid link 2"],
+            [RigidLink(0.410, 0.415, 0.02), RigidLink(0.455, 0.460, 0.02)],
+        )
+        assert robot.rigid_link == robot.rigid_links.links[0]
+
+    def test_rigid_links_may_have_names_and_diameters(self, tmp_path):
+        robot = read(PAIRS, tmp_path)
+        assert robot.rigid_links.names == ("rigid link 1", "long")
+        assert [link.diameter for link in robot.rigid_links.links] == [0.02, 0.01]
+
+    def test_an_inline_robot_may_have_one(self):
+        text = ROBOT_TEXT.format(LISTS).replace("\n", "\n  ").replace("  length_unit", "\n  length_unit")
+        task = synth.parse_task(
+            f"synth: 1\nlength_unit: cm\nrobot:{text}\ntargets: [{{position: [40, 10, 20]}}]"
+        )
+        assert task.robot.rigid_links.links[1].d35.lower == 0.455
+
+    @pytest.mark.parametrize(
+        ("rigid_link", "expected"),
+        [
+            (
+                "{d35: {one_of: [410, 455, 500]}, d45: {one_of: [415, 460]}}",
+                {"rigid_link.d45.one_of": "as many lengths as that of d35"},
+            ),
+            ("{d35: {one_of: [410]}, d45: [400, 450]}", {"rigid_link.d45": "but is [400, 450]"}),
+            (
+                "{d35: 410, d45: {one_of: [415]}}",
+                {"rigid_link.d35": "must be {one_of: [...]}, each for the d45"},
+            ),
+            ("{one_of: []}", {"rigid_link.one_of": "one rigid link at least"}),
+            (
+                "{d35: {one_of: []}, d45: {one_of: [-1]}}",
+                {"rigid_link.d35.one_of": "one rigid link at least", "rigid_link.d45.one_of[0]": "than 0"},
+            ),
+            ("{one_of: [{d35: 410, d45: 415}], d35: 4}", {"rigid_link.d35": "cannot stand beside"}),
+            ("{one_of: [{d35: [1, 2], d45: 415}]}", {"rigid_link.one_of[0].d35": "a number, but is a list"}),
+            ("{one_of: [{d35: 410, nam: a}]}", {"rigid_link.one_of[0].nam": "did you mean 'name'"}),
+            ("{d35: [410, 455, 500], d45: 460}", {"rigid_link.d35": "[low, high] or {one_of: [...]}"}),
+            ("{d35: {oneof: [410]}, d45: 415}", {"rigid_link.d35.oneof": "did you mean 'one_of'"}),
+            (
+                "{d35: {one_of: [410, 900, 410]}, d45: {one_of: [415, 460, 415]}}",
+                {
+                    "rigid_link.d35.one_of[1]": "d35 exceeds d45 by at least 440",
+                    "rigid_link.d35.one_of[2]": "the same d35 and d45 as rigid_link.d35.one_of[0]",
+                },
+            ),
+            (
+                "{one_of: [{name: a, d35: 9, d45: 15}, {name: a, d35: 410, d45: 415}, {d35: 410, d45: 415}]}",
+                {
+                    "rigid_link.one_of[0]": "d35 + d45 is at most 24",
+                    "rigid_link.one_of[1].name": "'a' is the name of rigid_link.one_of[0] already",
+                    "rigid_link.one_of[2]": "the same d35 and d45",
+                },
+            ),
+        ],
+    )
+    def test_every_mistake_is_named_at_its_own_key(self, rigid_link, expected, tmp_path):
+        with pytest.raises(synth.InputError) as caught:
+            read(rigid_link, tmp_path)
+        told = {mistake.key: mistake.message for mistake in caught.value.mistakes}
+        assert all(words in told.get(key, "") for key, words in expected.items()), told
+        assert all(mistake.line == 6 for mistake in caught.value.mistakes)
+
+    def test_a_shape_that_was_measured_says_which_it_has(self, tmp_path):
+        read(LISTS, tmp_path)
+        file = tmp_path / "measured.yaml"
+        start = "synth: 1\nlength_unit: mm\nrobot: robot.yaml\nrounding: 1\n"
+        stated = "distances: {d13: 650, d14: 667, d23: 603, d24: 619"
+        file.write_text(f"{start}{stated}}}")
+        with pytest.raises(synth.InputError, match="d35 is one of several in the robot"):
+            load_measurements(file)
+        file.write_text(f"{start}{stated}, d35: 455, d45: 460}}")
+        (measured,) = load_measurements(file)
+        assert measured.robot.rigid_links is None
+        assert measured.robot.rigid_link.d35.lower == 0.455
+        file.write_text(f"{start}{stated}, d35: 490, d45: 480}}")
+        with pytest.raises(synth.InputError, match=r"they are 410\.0 to 455\.0 mm apart"):
+            load_measurements(file)
+
+
+class TestValue:
+    @pytest.mark.parametrize(
+        ("names", "links", "key"),
+        [
+            ([], [], "links"),
+            (["a"], [RigidLink(0.4, 0.4), RigidLink(0.5, 0.5)], "links"),
+            (["a"], [RigidLink([0.4, 0.5], 0.4)], "links[0]"),
+            (["a"], ["b"], "links[0]"),
+            ([""], [RigidLink(0.4, 0.4)], "names[0]"),
+            (["a", "a"], [RigidLink(0.4, 0.4), RigidLink(0.5, 0.5)], "names[1]"),
+            (["a", "b"], [RigidLink(0.4, 0.4), RigidLink(0.4, 0.4, 0.01)], "links[1]"),
+        ],
+    )
+    def test_what_is_no_catalogue_is_refused(self, names, links, key):
+        with pytest.raises(synth.InputError) as caught:
+            RigidLinkChoices(names, links)
+        assert [mistake.key for mistake in caught.value.mistakes] == [key]
+
+    def test_a_robot_has_one_of_its_catalogue(self):
+        robot = replace(ROBOT, rigid_links=CATALOGUE)
+        assert robot.rigid_link == ROBOT.rigid_link  # which is one of it
+        assert replace(robot, rigid_link=RigidLink(0.3, 0.31)).rigid_link == CATALOGUE.links[0]
+        with pytest.raises(synth.InputError) as caught:
+            replace(robot, rigid_links=RigidLinkChoices(["open"], [RigidLink(0.3, 0.4)]))
+        assert [mistake.key for mistake in caught.value.mistakes] == ["rigid_links.links[0]"]
+
+
+@pytest.fixture(scope="module")
+def solved():
+    task, name = planted_rigid_link(1)
+    return task, name, synth.solve(task)
+
+
+@pytest.mark.parametrize("seed", range(2, 4))
+def test_the_right_one_of_six_is_chosen(seed):
+    task, name = planted_rigid_link(seed)
+    arm = synth.solve(task).robot
+    assert task.robot.name_of_rigid_link(arm.d35, arm.d45) == name
+
+
+def test_the_right_one_is_told_first_with_what_the_others_do(solved):
+    task, name, solution = solved
+    assert solution.found
+    assert solution.task == replace(
+        task, robot=replace(task.robot, rigid_link=solution.robot.robot.rigid_link)
+    )
+    content = solution_to_json(solution)
+    assert content["rigid_link"]["name"] == name
+    assert [each["rigid_link"]["name"] for each in content["alternatives"]] == [name] * len(
+        solution.designs[1:]
+    )
+    first = instructions(make_guide(solution.task, solution.best))[0]
+    assert first.startswith(
+        f"Of the rigid links take {name}: d35 = {1e3 * solution.robot.d35:.1f} mm and d45"
+    )
+    assert first in synth.guide.solution_text(solution)
+    others = [each for each in NAMES if each != name]
+    assert [note.split(" misses by ")[0] for note in solution.notes] == [
+        f"with {each} the best shape found" for each in others
+    ]
+
+
+def test_a_solution_file_holds_the_catalogue(solved, tmp_path):
+    *_, solution = solved
+    synth.write_files(solution, tmp_path)
+    loaded = synth.load_solution(tmp_path / "solution.json")
+    assert loaded == solution
+    assert loaded.task.robot.rigid_links == CATALOGUE
+    schema = str(synth.solution_schema())
+    assert "the catalogue" in schema
+    assert "one_of" in str(synth.robot_schema())
+
+
+def test_what_was_chosen_for_another_task_is_chosen_anew(solved):
+    """A solution's task has the whole catalogue still, so that it can be solved again."""
+    task, name, solution = solved
+    wrong = next(link for other, link in zip(NAMES, CATALOGUE.links, strict=True) if other != name)
+    again = replace(solution.task, robot=replace(task.robot, rigid_link=wrong))
+    arm = synth.solve(again, alternatives=0).robot
+    assert task.robot.name_of_rigid_link(arm.d35, arm.d45) == name
+
+
+def test_with_several_places_every_pair_is_looked_at():
+    task, name = planted_rigid_link(1)
+    base = BasePose([0.3, -0.2, 0.1], yaw=1.0)
+    targets = [replace(each, position=base.to_task(each.position)) for each in task.targets]
+    places = BaseChoices(["bench", "shelf"], [BasePose(), base])
+    few = RigidLinkChoices(NAMES[2:5], CATALOGUE.links[2:5])
+    there = replace(task, targets=targets, places=places, robot=replace(ROBOT, rigid_links=few))
+    solution = synth.solve(there)
+    assert solution.found
+    content = solution_to_json(solution)
+    assert (content["rigid_link"]["name"], content["guide"]["base"]["name"]) == (name, "shelf")
+    assert len(solution.notes) == 5
+    assert any(note.startswith("with C at bench ") for note in solution.notes)
+
+
+def test_with_a_base_that_is_free_each_rigid_link_has_a_place_of_its_own():
+    task, _ = planted_rigid_link(2)
+    few = RigidLinkChoices(NAMES[1:3], CATALOGUE.links[1:3])
+    places = BaseRange(Interval(-0.05, 0.05), Interval(-0.05, 0.05))
+    solution = synth.solve(replace(task, places=places, robot=replace(ROBOT, rigid_links=few)))
+    assert solution.found
+    assert places.contains(solution.robot.base)
+    assert len(solution.notes) == 1
+
+
+def test_nothing_is_said_of_what_there_was_no_time_for():
+    task, _ = planted_rigid_link(0)
+    solution = synth.solve(task, time_limit=0.0)
+    assert "with F nothing was looked for: the time was up" in solution.notes
+
+
+def with_rigid_links(task: Task, *names: str) -> Task:
+    links = [CATALOGUE.links[NAMES.index(name)] for name in names]
+    return replace(task, robot=replace(ROBOT, rigid_links=RigidLinkChoices(names, links)))
+
+
+class TestProof:
+    def test_what_no_rigid_link_can_do_is_proven_only_if_each_is(self):
+        """The link ends at most 758 mm over P1, and the rigid links reach 320 to 547 mm from there."""
+        up = Task("up", ROBOT, [PointTarget("up", [0.0, 0.0, 1.2])])
+        assert synth.solve(with_rigid_links(up, "A", "B")).status is Status.PROVEN_IMPOSSIBLE
+        solution = synth.solve(with_rigid_links(up, "A", "F", "B"))
+        assert solution.found
+        assert solution.robot.d35 == CATALOGUE.links[-1].d35.lower
+
+    @pytest.mark.parametrize("lower", [(5e-3, 4e-3, 3e-3), (5e-3, 1e-4, 3e-3)])
+    def test_the_bound_is_the_least_of_those_of_each(self, monkeypatch, lower):
+        """With stand-ins for the proofs, each of which knows its rigid link."""
+        bounds, asked = dict(zip(("A", "B", "C"), lower, strict=True)), []
+
+        class Proof:
+            def __init__(self, task, *_):
+                rigid = task.robot.rigid_link
+                self.name = CATALOGUE.name_of(rigid.d35.lower, rigid.d45.lower)
+
+            def search(self):
+                return 7e-3
+
+            def bound(self, known):
+                asked.append((self.name, known))
+                return Bound(bounds[self.name], min(known, 6e-3), 0.5e-3, 1)
+
+        monkeypatch.setattr(run, "Certifier", Proof)
+        solution = synth.solve(with_rigid_links(noisy(0, 6, noise=0.03), "A", "B", "C"), prove=True)
+        assert not solution.found
+        assert sorted(name for name, _ in asked) == ["A", "B", "C"]
+        assert [known for _, known in asked] == [7e-3, 6e-3, 6e-3]
+        assert asked[-1][0] == CATALOGUE.name_of(solution.robot.d35, solution.robot.d45)
+        assert solution.bound.lower_bound == min(lower)
+        proven = min(lower) > 0.5e-3
+        assert (solution.status is Status.PROVEN_IMPOSSIBLE) == proven
+        assert ("every shape misses some target by at least 3.000 mm" in solution.message) == proven
+
+    def test_a_catalogue_is_proven_as_a_whole(self):
+        solution = synth.solve(
+            with_rigid_links(noisy(0, 6, noise=0.03), "A", "D"), prove=True, alternatives=0
+        )
+        assert solution.status is Status.PROVEN_IMPOSSIBLE
+        assert CATALOGUE.name_of(solution.robot.d35, solution.robot.d45) == "D"
+        assert solution.notes[0] == "what is shown is the shape with D"
+        assert 0.0 < solution.bound.gap <= 1e-4 + 1e-12
+        assert solution.bound.lower_bound > 8e-3
+
+    @pytest.mark.parametrize(("seed", "none"), [(2, True), (1, False)])
+    def test_algebra_speaks_of_all_rigid_links(self, seed, none):
+        """Through one set of four targets passes no arm with A or B, through the other one with B."""
+        solution = synth.solve(with_rigid_links(noisy(seed, 4, noise=0.1), "A", "B"), alternatives=0)
+        assert ("no arm with any of the rigid links passes" in solution.message) == none
+        assert ("by algebra" in solution.message) == none
+
+
+def test_ranges_of_the_rigid_link_are_no_catalogue():
+    assert free_rigid_link(0).robot.rigid_links is None
