@@ -18,7 +18,7 @@ from synth.export.sheet.obstacle_outlines import clipped, solid_outline
 from synth.export.sheet.page import HEIGHT, WIDTH, Page
 from synth.geometry import Box, Capsule
 from synth.guide import make_guide
-from synth.robot import Interval, RigidLink, RigidLinkChoices, JointLimits, MalleableLink
+from synth.robot import Interval, JointLimits, MalleableLink, RigidLink, RigidLinkChoices
 from synth.synthesis import Design, Status, verify
 from synth.synthesis.wanted.ways import Motion
 from synth.task import Obstacle
