@@ -13,9 +13,9 @@ from synth.task import PointTarget, Task
 LENGTHS = (0.320, 0.365, 0.410, 0.455, 0.500, 0.545)  # m, of d35; d45 is 5 mm more
 NAMES = ("A", "B", "C", "D", "E", "F")
 CATALOGUE = RigidLinkChoices(NAMES, [RigidLink(d35, d35 + 0.005) for d35 in LENGTHS])
-# m. Five targets fix the rigid link, but two that are nearly at one radius and height count as one; and to
-# half a millimetre other rigid links often do, too.
-_APART, TOLERANCE = 0.05, 0.02e-3
+# m. Five targets fix the rigid link, but two that are nearly at one radius and height count as one; and the
+# looser they are met, the more of the other rigid links do, too.
+_APART, TOLERANCE = 0.1, 0.01e-3
 RANGE = Interval(0.30, 0.60)  # m
 
 
@@ -25,7 +25,7 @@ def planted_rigid_link(seed: int, count: int = 5) -> tuple[Task, str]:
     robot = replace(ROBOT, rigid_links=CATALOGUE)
     right = int(rng.integers(len(NAMES)))
     planted = replace(robot, rigid_link=CATALOGUE.links[right])
-    return Task(f"catalogue {seed}", robot, _reached(planted, count, rng, TOLERANCE)), NAMES[right]
+    return Task(f"catalogue {seed}", robot, _reached(planted, count, rng, TOLERANCE, _APART)), NAMES[right]
 
 
 def free_rigid_link(seed: int, count: int = 5) -> Task:
@@ -35,11 +35,13 @@ def free_rigid_link(seed: int, count: int = 5) -> Task:
     d45 = d35 + rng.uniform(-0.03, 0.03)
     planted = replace(ROBOT, rigid_link=RigidLink(d35, d45))
     robot = replace(ROBOT, rigid_link=RigidLink(RANGE, RANGE))
-    return Task(f"free rigid link {seed}", robot, _reached(planted, count, rng, 0.5e-3))
+    return Task(f"free rigid link {seed}", robot, _reached(planted, count, rng, 0.5e-3, 0.05))
 
 
-def _reached(robot: Robot, count: int, rng: np.random.Generator, tolerance: float) -> list[PointTarget]:
-    """Return targets that a random shape of a robot reaches, no two at nearly one radius and height."""
+def _reached(
+    robot: Robot, count: int, rng: np.random.Generator, tolerance: float, apart: float
+) -> list[PointTarget]:
+    """Return targets that a random shape of a robot reaches, apart by as much in radius and height, m."""
     rigid = robot.rigid_link
     while True:
         arm = Arm(robot, random_shape(rng), rigid.d35.lower, rigid.d45.lower)
@@ -47,7 +49,7 @@ def _reached(robot: Robot, count: int, rng: np.random.Generator, tolerance: floa
         meridian = np.column_stack([np.hypot(points[:, 0], points[:, 1]), points[:, 2]])
         chosen: list[int] = []
         for index, place in enumerate(meridian):
-            if all(np.linalg.norm(place - meridian[other]) >= _APART for other in chosen):
+            if all(np.linalg.norm(place - meridian[other]) >= apart for other in chosen):
                 chosen.append(index)
         if len(chosen) >= count:
             some = points[chosen[:count]]

@@ -74,13 +74,15 @@ def _in_range(tasks: Sequence[Task], places: BaseRange, seed: int, watch: Watch)
 
 
 def _search(runs: Sequence[Run], watch: Watch) -> None:
+    """Search in each run, but in those that are known to be impossible only if all are."""
+    searched = [run for run in runs if not run.impossible] or runs
     for most in (_QUICK, None):
-        for run in runs:
+        for run in searched:
             with run.kept(), watch.keeping_back(run.kept_back):
                 run.search.run(most)
             if watch.is_up():
                 return
-        if any(run.search.polishing.found for run in runs):
+        if any(run.search.polishing.found for run in searched):
             return
 
 
@@ -89,10 +91,10 @@ def _told(best: Run, watch: Watch) -> list[str]:
     told = []
     if best.others and not best.search.polishing.found and best.search.polishing.designs:
         told.append(f"what is shown is the shape {_where(best)}")
-    others = sorted(best.others, key=lambda run: (not run.search.polishing.found, least_objective(run)))
-    shown = others if len(others) <= _TOLD + 1 else others[:_TOLD]
-    told += [_of_another(run, watch) for run in best.others if run in shown]
-    left = len(others) - len(shown)
+    order = sorted(best.others, key=lambda run: (not run.search.polishing.found, least_objective(run)))
+    some = {id(run) for run in (order if len(order) <= _TOLD + 1 else order[:_TOLD])}
+    told += [_of_another(run, watch) for run in best.others if id(run) in some]
+    left = len(order) - len(some)
     return [*told, f"{counted(left, 'other choice')} did no better"] if left else told
 
 
@@ -100,6 +102,8 @@ def _of_another(run: Run, watch: Watch) -> str:
     where, designs = _where(run), run.search.polishing.designs
     if run.search.polishing.found:
         return f"{where} every target is reached, too, by a shape that is less wanted"
+    if run.impossible:
+        return f"{where} no shape can do it: {run.impossible[0]}"
     if designs:
         worst = min(float(np.max(design.verification.misses)) for design in designs)
         return f"{where} the best shape found misses by {rounded_up(worst, digits=2)} mm"

@@ -1,9 +1,9 @@
-"""Planted rigid links: five targets each, with a catalogue of six rigid links, and with d35 and d45 in ranges.
+"""Planted rigid links: five targets each, with a catalogue of six, and with d35 and d45 in ranges.
 
     python tests/benchmarks/catalogue.py [--catalogues 50] [--ranges 100]
 
-A catalogue counts if the rigid link that was planted is chosen, with every target within 0.02 mm; ranges count if
-every target is within 0.5 mm. Misses are those of the independent check. Times are of this machine.
+A catalogue counts if the rigid link that was planted is chosen, with every target within 0.01 mm; ranges
+count if every target is within 0.5 mm. Misses are those of the independent check. Times are of this machine.
 """
 
 from __future__ import annotations
