@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 from planted import ROBOT, noisy
-from planted_rigid_links import CATALOGUE, NAMES, free_rigid_link, planted_rigid_link
+from planted_rigid_links import CATALOGUE, NAMES, RANGE, free_rigid_link, planted_rigid_link
 
 import synth
 from synth.export import solution_to_json
@@ -271,6 +272,13 @@ class TestProof:
         assert (solution.status is Status.PROVEN_IMPOSSIBLE) == proven
         assert ("every shape misses some target by at least 3.000 mm" in solution.message) == proven
 
+    def test_of_a_base_in_ranges_it_is_said_what_the_proof_is_of(self, monkeypatch):
+        proof = SimpleNamespace(search=lambda: 7e-3, bound=lambda _: Bound(5e-3, 6e-3, 0.5e-3, 1))
+        monkeypatch.setattr(run, "Certifier", lambda *_: proof)
+        solution = synth.solve(noisy(0, places=BaseRange(Interval(0.0, 0.1))), prove=True, alternatives=0)
+        assert solution.status is Status.BEST_EFFORT
+        assert "what is proven holds where the base was found to stand" in solution.notes
+
     def test_a_catalogue_is_proven_as_a_whole(self):
         solution = synth.solve(
             with_rigid_links(noisy(0, 6, noise=0.03), "A", "D"), prove=True, alternatives=0
@@ -289,5 +297,19 @@ class TestProof:
         assert ("by algebra" in solution.message) == none
 
 
-def test_ranges_of_the_rigid_link_are_no_catalogue():
-    assert free_rigid_link(0).robot.rigid_links is None
+def test_of_ranges_it_is_said_that_nothing_is_proven(monkeypatch):
+    monkeypatch.setattr(run, "Certifier", None)  # nobody looks for a proof
+    free = replace(ROBOT, rigid_link=RigidLink([0.44, 0.47], [0.44, 0.47]))
+    solution = synth.solve(replace(noisy(0, 8, noise=0.03), robot=free), prove=True, alternatives=0)
+    assert solution.status is Status.BEST_EFFORT
+    assert solution.bound is None
+    assert "nothing was proven: a rigid link in ranges is not bounded" in str(solution)
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_a_rigid_link_in_ranges_is_found(seed):
+    task = free_rigid_link(seed)
+    solution = synth.solve(task, alternatives=0)
+    assert solution.found
+    assert RANGE.contains(solution.robot.d35)
+    assert make_guide(solution.task, solution.best).rigid_link == ""

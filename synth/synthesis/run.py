@@ -121,6 +121,11 @@ class Run:
         if self.task.is_partial:
             self.notes.append("nothing was proven: which part of a surface is left is not bounded")
             return
+        if not self.task.robot.rigid_link.is_fixed:
+            self.notes.append(
+                "nothing was proven: a rigid link in ranges is not bounded, one of given lengths is"
+            )
+            return
         self.complete = True
         watch, stopped = self.watch.within(_PROOF_TIME), False
         with self.watch.on("proving"):
@@ -136,7 +141,7 @@ class Run:
         if stopped or watch.interrupted:
             self.notes.append("the proof was stopped early: more time may prove more")
         if self.elsewhere and self.bound is not None and self.bound.lower_bound > 0.0:
-            self.notes.append("what is proven holds for the place where the base was found to stand")
+            self.notes.append("what is proven holds where the base was found to stand")
 
     def certifier(self, watch: Watch) -> Certifier:
         """Return what proves how little any shape can miss with this place and rigid link."""
