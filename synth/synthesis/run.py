@@ -113,47 +113,6 @@ class Run:
         count = len(self.task.targets)
         return 0.0 if self.part is self.task else min(count / (count + _AS_LONG), 1.0 - _LEAST_SEARCH)
 
-    def prove(self) -> None:
-        """Bound how little any shape can miss, unless the search was stopped already."""
-        if self.watch.interrupted:
-            self.notes.append("nothing was proven: the search was stopped before")
-            return
-        if self.task.is_partial:
-            self.notes.append("nothing was proven: which part of a surface is left is not bounded")
-            return
-        if not self.task.robot.rigid_link.is_fixed:
-            self.notes.append(
-                "nothing was proven: a rigid link in ranges is not bounded, one of given lengths is"
-            )
-            return
-        self.complete = True
-        watch, stopped = self.watch.within(_PROOF_TIME), False
-        with self.watch.on("proving"):
-            own = self.certifier(watch)
-            known = own.search()
-            # What is not to be chosen is soon excluded, mostly; the time that is left is for what was.
-            for number, run in enumerate(self.others):
-                share = watch.within(watch.remaining / (len(self.others) + 1 - number))
-                run.bound = run.certifier(share).bound(known)
-                known = known if run.bound is None else run.bound.best_found
-                stopped |= share.interrupted
-            self.bound = own.bound(known)
-        if stopped or watch.interrupted:
-            self.notes.append("the proof was stopped early: more time may prove more")
-        if self.elsewhere and self.bound is not None and self.bound.lower_bound > 0.0:
-            self.notes.append("what is proven holds where the base was found to stand")
-
-    def certifier(self, watch: Watch) -> Certifier:
-        """Return what proves how little any shape can miss with this place and rigid link."""
-        return Certifier(
-            self.part,
-            float(self.task.tolerances.min()),
-            self.search.polishing.designs,
-            self.search.polishing.keep,
-            watch,
-            self.seed,
-        )
-
     def solution(self) -> Solution:
         """Rank what was found and say what it is worth."""
         whole = WholeTask(self.task)
@@ -219,6 +178,50 @@ class Run:
         status = Status.LIMIT if cut_short or whole.unseen else Status.BEST_EFFORT
         asked = replace(self.task, places=self.places)
         return status, why_no_better(asked, designs, self.search.polishing.blocked)
+
+
+def prove_run(run: Run) -> None:
+    """Bound how little any shape can miss, unless the search was stopped already.
+
+    Args:
+        run: The run, whose search is over; the bound is of what was not chosen, too.
+    """
+    if run.watch.interrupted:
+        run.notes.append("nothing was proven: the search was stopped before")
+        return
+    if run.task.is_partial:
+        run.notes.append("nothing was proven: which part of a surface is left is not bounded")
+        return
+    if not run.task.robot.rigid_link.is_fixed:
+        run.notes.append("nothing was proven: a rigid link in ranges is not bounded, one of given lengths is")
+        return
+    run.complete = True
+    watch, stopped = run.watch.within(_PROOF_TIME), False
+    with run.watch.on("proving"):
+        own = _certifier(run, watch)
+        known = own.search()
+        # What is not to be chosen is soon excluded, mostly; the time that is left is for what was.
+        for number, other in enumerate(run.others):
+            share = watch.within(watch.remaining / (len(run.others) + 1 - number))
+            other.bound = _certifier(other, share).bound(known)
+            known = known if other.bound is None else other.bound.best_found
+            stopped |= share.interrupted
+        run.bound = own.bound(known)
+    if stopped or watch.interrupted:
+        run.notes.append("the proof was stopped early: more time may prove more")
+    if run.elsewhere and run.bound is not None and run.bound.lower_bound > 0.0:
+        run.notes.append("what is proven holds where the base was found to stand")
+
+
+def _certifier(run: Run, watch: Watch) -> Certifier:
+    return Certifier(
+        run.part,
+        float(run.task.tolerances.min()),
+        run.search.polishing.designs,
+        run.search.polishing.keep,
+        watch,
+        run.seed,
+    )
 
 
 def bound_of_all(bound: Bound | None, task: Task, designs: tuple[Design, ...]) -> Bound | None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from synth.synthesis.arguments import checked_task
 from synth.synthesis.choosing import chosen, leaves_a_choice
 from synth.synthesis.many_targets import part_of
-from synth.synthesis.run import Run
+from synth.synthesis.run import Run, prove_run
 from synth.synthesis.search import ALTERNATIVES
 from synth.watch import Watch
 
@@ -78,7 +78,7 @@ def solve(
                 run.search.run()
     if prove and run.broke_off is None:
         with run.kept(), watch.keeping_back(run.kept_back):
-            run.prove()
+            prove_run(run)
     return run.solution()
 
 
