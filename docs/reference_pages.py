@@ -29,6 +29,8 @@ LENGTHS = [
 ]  # fmt: skip
 # Parts of a solution that have a page of their own, or are described in the same file already.
 ELSEWHERE = ("task.", "releases[].task.", "releases[].design.", "alternatives[].")
+# Of these, which no model requires on its own, a file holds the first two or the last.
+EITHER = ("rigid_link.d35", "rigid_link.d45", "rigid_link.one_of")
 UNITS = (
     dict.fromkeys(LENGTHS, "length")
     | dict.fromkeys(
@@ -146,6 +148,26 @@ d34: 49
 rigid_link: {d35: 455, d45: 460, diameter: 20}
 joint_limits_deg: {base: [10, 350], second: [53, 307]}
 """
+ROBOT_LENGTHS = """\
+name: my robot
+length_unit: mm
+d12: 58
+link: {length: [550, 700], min_bend_radius: 110, diameter: 50}
+d34: 49
+rigid_link: {d35: {one_of: [410, 455, 500]}, d45: {one_of: [415, 460, 505]}}
+"""
+ROBOT_CATALOGUE = """\
+name: my robot
+length_unit: mm
+d12: 58
+link: {length: [550, 700], min_bend_radius: 110, diameter: 50}
+d34: 49
+rigid_link:
+  one_of:
+    - {name: short, d35: 410, d45: 415, diameter: 18}
+    - {name: bought, d35: 455, d45: 460}
+  diameter: 20
+"""
 MEASURED = """\
 synth: 1
 name: a shape measured by tape
@@ -184,7 +206,7 @@ PAGES = (
     FilePage(
         "robot-file", "Robot files",
         "A robot file says what is fixed in a robot; a task names its path, or holds the same keys under `robot`.",
-        RobotFile, (ROBOT,),
+        RobotFile, (ROBOT, ROBOT_LENGTHS, ROBOT_CATALOGUE),
     ),
     FilePage(
         "measured-file", "Files of measured shapes",
@@ -194,11 +216,15 @@ PAGES = (
 )  # fmt: skip
 
 
-def parts_of(annotation: object) -> list[type[BaseModel]]:
-    """Return the models that the type of a key holds."""
+def parts_of(annotation: object, *, listed: bool = False) -> dict[type[BaseModel], bool]:
+    """Return the models that the type of a key holds, and whether a list of each may stand there."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return [annotation]
-    return [part for argument in typing.get_args(annotation) for part in parts_of(argument)]
+        return {annotation: listed}
+    found: dict[type[BaseModel], bool] = {}
+    for argument in typing.get_args(annotation):
+        inside = parts_of(argument, listed=listed or typing.get_origin(annotation) is list)
+        found |= {part: found.get(part, False) or in_list for part, in_list in inside.items()}
+    return found
 
 
 def keys_of(model: type[BaseModel], path: str = "") -> dict[str, typing.Any]:
@@ -207,11 +233,9 @@ def keys_of(model: type[BaseModel], path: str = "") -> dict[str, typing.Any]:
     for name, field in model.model_fields.items():
         key = f"{path}{field.alias or name}"
         found[key] = field
-        inside = f"{key}[]." if "list[" in str(field.annotation) else f"{key}."
-        if key == "configurations":
-            inside = "configurations.*."
-        for part in parts_of(field.annotation) if name != "robot" else []:  # that has a page of its own
-            found |= keys_of(part, inside)
+        for part, listed in parts_of(field.annotation).items():
+            inside = "configurations.*." if key == "configurations" else f"{key}[]." if listed else f"{key}."
+            found |= {} if name == "robot" else keys_of(part, inside)  # that has a page of its own
     return found
 
 
@@ -248,7 +272,9 @@ def _inner(value: dict | list) -> list[object]:
     return list(value.values() if isinstance(value, dict) else value)
 
 
-def _default(field: typing.Any) -> str:
+def _default(path: str, field: typing.Any) -> str:
+    if path in EITHER:
+        return "**d35 and d45, or one_of**"
     if field.is_required():
         return "**must be given**"
     if field.default is PydanticUndefined:
@@ -267,6 +293,8 @@ def unit_of(path: str) -> str:
     key = path.rpartition(".")[2]
     if path == "base":
         return ""
+    if key == "one_of":
+        return "" if path == "rigid_link.one_of" else "length"
     if key == "length" and path.endswith("rigid_link.length"):
         return "length"
     return UNITS[key] if key in UNITS else dict.fromkeys([*PLAIN, "*"], "")[key]
@@ -282,7 +310,7 @@ def file_page(page: FilePage) -> str:
     """Return the page about a kind of file."""
     shown = examples_of(page)
     rows = [
-        f"| `{path}` | {field.description}{_choices(field)} | {unit_of(path)} | {_default(field)} "
+        f"| `{path}` | {field.description}{_choices(field)} | {unit_of(path)} | {_default(path, field)} "
         f"| {_written(shown[path])} |"
         for path, field in keys_of(page.model).items()
     ]

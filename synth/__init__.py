@@ -40,6 +40,7 @@ if TYPE_CHECKING:
         LinkShape,
         MalleableLink,
         RigidLink,
+        RigidLinkChoices,
         Robot,
         SurfaceMesh,
         Workspace,
@@ -97,8 +98,8 @@ _ROOMS = {
     "measurement": "Inspection Measurement inspect load_measurements",
     "robot": (
         "PRESETS Arm BaseChoices BasePose BaseRange Interval JointBranches JointLimits LinkShape "
-        "MalleableLink RigidLink Robot SurfaceMesh Workspace keeps_clear link_to_pose links_to_poses "
-        "why_no_link"
+        "MalleableLink RigidLink RigidLinkChoices Robot SurfaceMesh Workspace keeps_clear link_to_pose "
+        "links_to_poses why_no_link"
     ),
     "solution_file": "load_solution solution_from_json solution_schema",
     "sweep": "TaskOutcome SweepProgress solve_many",
@@ -149,6 +150,7 @@ __all__ = [
     "Progress",
     "Release",
     "RigidLink",
+    "RigidLinkChoices",
     "Robot",
     "Solution",
     "SolverError",

@@ -18,7 +18,7 @@ from synth.export.sheet.obstacle_outlines import clipped, solid_outline
 from synth.export.sheet.page import HEIGHT, WIDTH, Page
 from synth.geometry import Box, Capsule
 from synth.guide import make_guide
-from synth.robot import Interval, JointLimits, MalleableLink
+from synth.robot import Interval, JointLimits, MalleableLink, RigidLink, RigidLinkChoices
 from synth.synthesis import Design, Status, verify
 from synth.synthesis.wanted.ways import Motion
 from synth.task import Obstacle
@@ -65,6 +65,9 @@ def test_a_rigid_link_that_was_chosen_is_cut_first():
     robot = replace(ROBOT, rigid_link=replace(ROBOT.rigid_link, d35=Interval(0.3, 0.5)))
     told = words_of(make_solution(robot=robot))
     assert "1 Cut the rigid link to d35 = 455.0 mm and d45 = 460.0 mm" in told
+    catalogue = RigidLinkChoices(["short", "long"], [RigidLink(0.41, 0.415), ROBOT.rigid_link])
+    told = words_of(make_solution(robot=replace(ROBOT, rigid_links=catalogue)))
+    assert "1 Of the rigid links take long: d35 = 455.0 mm and d45 = 460.0 mm" in told
 
 
 def test_obstacles_are_drawn_and_named_with_the_clearance_at_each_target():

@@ -173,9 +173,13 @@ def _link(arm: Arm) -> dict[str, object]:
     }
 
 
-def _rigid_link(arm: Arm) -> dict[str, float]:
-    """Return d35 and d45 as they are, m; those of `distances` come out of the points, rounded."""
-    return {"d35": arm.d35, "d45": arm.d45}
+def _rigid_link(arm: Arm) -> dict[str, object]:
+    """Return d35 and d45 as they are, m; those of `distances` come out of the points, rounded.
+
+    The name comes first where it was chosen from a catalogue.
+    """
+    name = arm.robot.name_of_rigid_link(arm.d35, arm.d45)
+    return ({"name": name} if name else {}) | {"d35": arm.d35, "d45": arm.d45}
 
 
 def _listed(task: Task, design: Design) -> NDArray[np.intp]:

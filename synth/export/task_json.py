@@ -17,7 +17,7 @@ from synth.task import Floor
 
 if TYPE_CHECKING:
     from synth.paths import Path
-    from synth.robot import Interval, LinkShape, Robot
+    from synth.robot import Interval, LinkShape, RigidLink, Robot
     from synth.task import Obstacle, TargetTable, Task
 
 
@@ -99,7 +99,7 @@ def arcs_to_json(shape: LinkShape) -> list[object]:
 
 
 def _robot(robot: Robot) -> dict[str, object]:
-    link, rigid, limits = robot.link, robot.rigid_link, robot.joint_limits
+    link, limits = robot.link, robot.joint_limits
     return {
         "name": robot.name,
         "d12": robot.d12,
@@ -111,9 +111,19 @@ def _robot(robot: Robot) -> dict[str, object]:
         },
         "tip_offset": robot.tip_offset,
         "d34": robot.d34,
-        "rigid_link": {"d35": _interval(rigid.d35), "d45": _interval(rigid.d45), "diameter": rigid.diameter},
+        "rigid_link": _rigid_link(robot.rigid_link),
+        "rigid_links": None
+        if robot.rigid_links is None
+        else {
+            "names": robot.rigid_links.names,
+            "links": [_rigid_link(link) for link in robot.rigid_links.links],
+        },
         "joint_limits": {"base": _interval(limits.base), "second": _interval(limits.second)},
     }
+
+
+def _rigid_link(link: RigidLink) -> dict[str, object]:
+    return {"d35": _interval(link.d35), "d45": _interval(link.d45), "diameter": link.diameter}
 
 
 def _interval(interval: Interval) -> list[float]:

@@ -26,7 +26,7 @@ def instructions(guide: Guide) -> tuple[str, ...]:
     Args:
         guide: The guide to a shape that meets its task.
     """
-    steps = [] if guide.cut is None else [cut_sentence(*guide.cut)]
+    steps = [] if guide.cut is None else [rigid_link_sentence(*guide.cut, guide.rigid_link)]
     limit = rounded_up(guide.arm.robot.link.min_bend_radius)
     shape = (
         f"Soften the link and shape it: {guide.link.describe()}. "
@@ -52,11 +52,10 @@ def station_sentence(guide: Guide) -> str:
     return f"{name} is the middle of the tube, {along:.0f} mm along from P2, END its end."
 
 
-def cut_sentence(d35: float, d45: float) -> str:
-    """Return to what the rigid link is to be cut, where the synthesis chose it."""
-    return (
-        f"Cut the rigid link to d35 = {1e3 * d35:.1f} mm and d45 = {1e3 * d45:.1f} mm, from P3 and P4 to P5."
-    )
+def rigid_link_sentence(d35: float, d45: float, name: str) -> str:
+    """Return which rigid link of a catalogue is to be taken, or to what it is to be cut without one."""
+    lengths = f"d35 = {1e3 * d35:.1f} mm and d45 = {1e3 * d45:.1f} mm, from P3 and P4 to P5"
+    return f"Of the rigid links take {name}: {lengths}." if name else f"Cut the rigid link to {lengths}."
 
 
 def base_sentence(guide: Guide) -> str:

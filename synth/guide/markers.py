@@ -75,7 +75,8 @@ class Guide:
         stations: Arc lengths s from P2 of the points on the centreline, shape (k,), m: multiples of
             50 mm, 100 at most, and the link's end.
         arm: The robot in the shape.
-        cut: Distances (d35, d45) to cut the rigid link to, m, where the synthesis chose them; else None.
+        cut: Distances (d35, d45) of the rigid link, m, where the synthesis chose it; else None.
+        rigid_link: What that is called in the catalogue it was chosen from; empty if it is to be cut.
         met: Whether the shape meets the task. If not, nobody is to bend the link to it: what is said of it is
             no instruction.
         tolerance: How precisely axis 2 must stand; NaN for a task that is not met.
@@ -89,6 +90,7 @@ class Guide:
     stations: FloatArray
     arm: Arm
     cut: tuple[float, float] | None
+    rigid_link: str
     met: bool
     tolerance: ShapeTolerance
     forgiveness: Forgiveness | None
@@ -142,13 +144,15 @@ def _guide(task: Task, design: Design) -> Guide:
     task, check = what_counts(task, arm, design.verification)
     design = replace(design, verification=check)
     stations, posture = _stations(arm.shape.length), hold_posture(task, arm)
+    name = arm.robot.name_of_rigid_link(arm.d35, arm.d45)
     return Guide(
         place=base_place(task, design),
         posture=posture,
         hold=place(arm, stations, posture.joint1),
         stations=stations,
         arm=arm,
-        cut=None if task.robot.rigid_link.is_fixed else (arm.d35, arm.d45),
+        cut=(arm.d35, arm.d45) if name or not task.robot.rigid_link.is_fixed else None,
+        rigid_link=name,
         met=check.found,
         tolerance=shape_tolerance(task, design),
         forgiveness=forgiveness,

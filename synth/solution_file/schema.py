@@ -54,6 +54,7 @@ class LinkPart(Part):
 class RigidLinkPart(Part):
     """The rigid link as it is chosen."""
 
+    name: str | None = Field(default=None, description="what its catalogue calls it; absent: there is none")
     d35: Number = Field(gt=0.0, description="distance from P3 to P5, m")
     d45: Number = Field(gt=0.0, description="distance from P4 to P5, m")
 

@@ -20,6 +20,7 @@ from synth.robot import (
     LinkShape,
     MalleableLink,
     RigidLink,
+    RigidLinkChoices,
     Robot,
 )
 from synth.solution_file.task_schema import BoxPart, SpherePart
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
         PathPart,
         PlacesPart,
         ReleasedTaskPart,
+        RigidLinkLimits,
         RobotPart,
         SurfacePart,
         TargetPart,
@@ -181,7 +183,7 @@ def _approaches(read: Sequence[TargetPart]) -> FloatArray | None:
 
 
 def _robot(read: RobotPart) -> Robot:
-    link, rigid, limits = read.link, read.rigid_link, read.joint_limits
+    link, several, limits = read.link, read.rigid_links, read.joint_limits
     most = math.inf if link.max_total_bend is None else link.max_total_bend
     return Robot(
         name=read.name,
@@ -189,9 +191,16 @@ def _robot(read: RobotPart) -> Robot:
         link=MalleableLink(Interval(*link.length), link.min_bend_radius, link.diameter, most),
         d34=read.d34,
         tip_offset=read.tip_offset,
-        rigid_link=RigidLink(Interval(*rigid.d35), Interval(*rigid.d45), rigid.diameter),
+        rigid_link=_rigid_link(read.rigid_link),
+        rigid_links=None
+        if several is None
+        else RigidLinkChoices(several.names, [_rigid_link(link) for link in several.links]),
         joint_limits=JointLimits(Interval(*limits.base), Interval(*limits.second)),
     )
+
+
+def _rigid_link(read: RigidLinkLimits) -> RigidLink:
+    return RigidLink(Interval(*read.d35), Interval(*read.d45), read.diameter)
 
 
 def _solid(read: ObstaclePart) -> Solid:

@@ -50,6 +50,13 @@ class RigidLinkLimits(Part):
     diameter: Length = Field(default=0.0, description="outer diameter, m")
 
 
+class RigidLinksPart(Part):
+    """A catalogue of rigid links."""
+
+    names: Some[str] = Field(description="what the rigid links are called")
+    links: Some[RigidLinkLimits] = Field(description="the rigid links, each of one length d35 and d45")
+
+
 class JointRanges(Part):
     """Ranges of the joints."""
 
@@ -65,7 +72,8 @@ class RobotPart(Part):
     link: LinkLimits = Field(description="the malleable link")
     tip_offset: Number = Field(description="where the link ends, from P3 towards P4, m")
     d34: Positive = Field(description="distance from P3 to P4, m")
-    rigid_link: RigidLinkLimits = Field(description="the rigid link")
+    rigid_link: RigidLinkLimits = Field(description="the rigid link; of a catalogue the one chosen")
+    rigid_links: RigidLinksPart | None = Field(default=None, description="the catalogue; null: there is none")
     joint_limits: JointRanges = Field(description="ranges of the joints")
 
 

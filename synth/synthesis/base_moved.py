@@ -10,7 +10,7 @@ import numpy as np
 
 from synth.robot import BaseRange, Interval
 from synth.rounding import rounded_up
-from synth.synthesis.placing import placed
+from synth.synthesis.placing import in_range
 from synth.synthesis.solution import Release
 from synth.synthesis.solve import follow
 
@@ -97,7 +97,7 @@ def _moved_far(solution: Solution, watch: Watch) -> Release | None:
     x, y, z = (Interval(float(c) - _AROUND, float(c) + _AROUND) for c in task.base.position)
     places = BaseRange(x, y, z, yaw=Interval(-math.pi, math.pi))
     free = replace(task, places=places, floor=task.floor_height)
-    found = placed(free, solution.seed, watch.aside(), 0).solution()
+    found = in_range(free, places, solution.seed, watch.aside()).solution()
     if not found.found:
         return None
     base = found.best.arm.base

@@ -1,4 +1,4 @@
-"""Where the base should stand: the search over its places, before the search for shapes at the one chosen.
+"""Where a base that is free in ranges should stand: shapes and places are searched for together.
 
 Shapes and the pose of the base are refined together, many at once; each start then stands somewhere, and from
 there on the task is one whose base is given. So nothing behind this module knows of a base that is free.
@@ -13,72 +13,37 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.robot import BaseChoices, BaseRange
-from synth.rounding import rounded_up
 from synth.synthesis.many_targets import part_of
 from synth.synthesis.run import Run
 from synth.synthesis.starts import Start, start_points
 from synth.synthesis.wanted import best_of, objective, preferred_designs
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Sequence
 
-    from synth.robot import BasePose
+    from synth.robot import BasePose, BaseRange
     from synth.task import Task
     from synth.watch import Watch
 
 # Start points, each with its own place, until a shape reaches every target there; and so many of those that
 # miss by more than the tolerances, the first of which promises the most.
 _TRIED, _TRIED_THAT_MISS = 12, 3
-_QUICK = 2  # start points at each of several places, before any place is searched thoroughly
 # A place is told in round numbers where that will do: to so much, m and rad, the coarsest first.
 _ROUND = ((1e-3, math.radians(0.1)), (1e-4, math.radians(0.01)))
 
 
-def placed(task: Task, seed: int, watch: Watch, alternatives: int) -> Run:
-    """Search for the place of the base, and for shapes there.
+def in_range(task: Task, places: BaseRange, seed: int, watch: Watch) -> Run:
+    """Refine shapes and places together, and stay at the first place where a shape reaches every target.
 
     Args:
-        task: The task, whose base is free.
+        task: The task, whose base is free in ranges.
+        places: These ranges.
         seed: Seed of the random shapes and places.
         watch: Its time.
-        alternatives: As for `solve`.
 
     Returns:
-        The run at the place chosen: its shapes are found, and it can be proven and told.
+        The run at the place found.
     """
-    places = task.places
-    assert places is not None, "the base is free"  # noqa: S101 - for the type checker
-    if isinstance(places, BaseChoices):
-        run = _of_choices(task, places, seed, watch)
-    else:
-        run = _in_range(task, places, seed, watch)
-    run.places = places
-    with run.kept(), watch.keeping_back(run.kept_back):
-        run.search.look_beside(alternatives)
-    return run
-
-
-def _of_choices(task: Task, places: BaseChoices, seed: int, watch: Watch) -> Run:
-    """Search at each place, and choose the one whose best shape is wanted most."""
-    runs = [_run_at(task, pose, seed, watch) for pose in places.poses]
-    for most in (_QUICK, None):
-        for run in runs:
-            with run.kept(), watch.keeping_back(run.kept_back):
-                run.search.run(most)
-            if watch.is_up():
-                break
-        if watch.is_up() or any(run.search.polishing.found for run in runs):
-            break
-    chosen = _best(runs)
-    others = [run for run in runs if run is not chosen]
-    chosen.elsewhere = not all(run.impossible for run in others)
-    chosen.notes += [_told(run, places) for run in others]
-    return chosen
-
-
-def _in_range(task: Task, places: BaseRange, seed: int, watch: Watch) -> Run:
-    """Refine shapes and places together, and stay at the first place where a shape reaches every target."""
     part = part_of(task, seed, watch)
     runs: list[Run] = []
     impossible = _is_out_of_reach(task, places)
@@ -89,25 +54,26 @@ def _in_range(task: Task, places: BaseRange, seed: int, watch: Watch) -> Run:
         if runs[-1].search.polishing.found or watch.is_up():
             break
     if not runs:
-        return _run_at(task, task.base, seed, watch)
-    best = _best(runs)
+        return run_at(task, task.base, seed, watch)
+    best = best_run(runs)
     best.elsewhere = not impossible  # then it is so where the base stands now, too
     if best.search.polishing.found:
         best = _at_round_numbers(task, places, best, seed, watch)
     return best
 
 
-def _run_at(task: Task, base: BasePose, seed: int, watch: Watch, part: Task | None = None) -> Run:
+def run_at(task: Task, base: BasePose, seed: int, watch: Watch, part: Task | None = None) -> Run:
     """Return a run with the base somewhere; `part` is what start points were searched with, if they were."""
     there = task.standing_at(base)
     if part is None or part is task:
         part = part_of(there, seed, watch)
-    return Run(there, part.standing_at(base), seed, watch, alternatives=0)
+    seen = there if part is there else part.standing_at(base)
+    return Run(there, seen, seed, watch, alternatives=0, places=task.places)
 
 
 def _started(task: Task, part: Task, start: Start, seed: int, watch: Watch) -> Run:
     """Return a run where a start point stands, which is polished."""
-    run = _run_at(task, start.arm.base, seed, watch, part)
+    run = run_at(task, start.arm.base, seed, watch, part)
     with run.kept(), watch.keeping_back(run.kept_back):
         run.search.polish(start)
     return run
@@ -143,26 +109,16 @@ def _rounded(places: BaseRange, base: BasePose, length: float, angle: float) -> 
     return places.pose(places.into_limits(np.round(row / steps) * steps))
 
 
-def _best(runs: list[Run]) -> Run:
+def best_run(runs: Sequence[Run]) -> Run:
     """Return the run that reaches every target with the shape that is wanted most, or misses least."""
     found = [run for run in runs if run.search.polishing.found]
     if found:
         best = [best_of(run.part, run.search.polishing.designs)[0] for run in found]
         return found[int(preferred_designs(best)[0])]
     with_shape = [run for run in runs if run.search.polishing.designs]
-    return min(with_shape or runs, key=lambda run: min(_objectives(run), default=math.inf))
+    return min(with_shape or runs, key=least_objective)
 
 
-def _objectives(run: Run) -> Iterator[float]:
-    return (objective(run.part, design) for design in run.search.polishing.designs)
-
-
-def _told(run: Run, places: BaseChoices) -> str:
-    """Return a sentence on what was found at a place that was not chosen."""
-    name, designs = places.name_of(run.task.base), run.search.polishing.designs
-    if run.search.polishing.found:
-        return f"at {name} every target is reached, too, by a shape that is less wanted"
-    if not designs:
-        return f"at {name} no shape was found that the hardware can take"
-    worst = min(float(np.max(design.verification.misses)) for design in designs)
-    return f"at {name} the best shape found misses by {rounded_up(worst, digits=2)} mm"
+def least_objective(run: Run) -> float:
+    """Return the objective of a run's best shape, a norm of its misses; infinite if it has none."""
+    return min((objective(run.part, design) for design in run.search.polishing.designs), default=math.inf)

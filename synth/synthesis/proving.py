@@ -64,22 +64,36 @@ class Certifier:
         self._rng = np.random.default_rng(self.seed)
 
     def certificate(self) -> Bound | None:
-        """Return the bound; None where there is no proof for such a task."""
+        """Look for the shape of the least worst miss; return the bound, None where there is none."""
+        self.search()
+        return self.bound()
+
+    def bound(self, known: float = math.inf) -> Bound | None:
+        """Return the bound, as near as may be to the least worst miss found.
+
+        Args:
+            known: The worst weighted miss of a shape with another rigid link or at another place, m: what is
+                worse need not be found here, only excluded.
+        """
+        return prove(
+            self.task,
+            min(known, self._best()),
+            self._best_misses(),
+            tightest=self.tightest,
+            gap=_GAP,
+            watch=self.watch,
+            improve=lambda end: min(known, self._improve(end)),
+        )
+
+    def search(self) -> float:
+        """Look for the shape of the least worst miss; return the least worst weighted miss found, m."""
         for design in sorted(self.designs, key=self._worst)[:_POLISHED]:
             self._polish(design.arm, design.verification.joints)
         if self._best() > _GAP:
             # The shapes so far were searched for by the task's own objective, maybe another one.
             for start in islice(start_points(self._minimax, self.seed, watch=self.watch), _STARTS):
                 self._polish(start.arm, start.joints)
-        return prove(
-            self.task,
-            self._best(),
-            self._best_misses(),
-            tightest=self.tightest,
-            gap=_GAP,
-            watch=self.watch,
-            improve=self._improve,
-        )
+        return self._best()
 
     def _worst(self, design: Design) -> float:
         """Return the worst weighted miss of a design, m."""

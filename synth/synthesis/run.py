@@ -20,7 +20,7 @@ from synth.synthesis.all_targets import (
     proven_whole,
     verified_in_time,
 )
-from synth.synthesis.bound import why_impossible
+from synth.synthesis.bound import Bound, why_impossible
 from synth.synthesis.many_targets import without_partial
 from synth.synthesis.present_shape import changing_little
 from synth.synthesis.proving import Certifier
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from synth.robot import BasePlaces
-    from synth.synthesis.bound import Bound
     from synth.task import Task
     from synth.watch import Watch
 
@@ -57,7 +56,8 @@ class Run:
         broke_off: What broke that nobody foresaw.
         notes: What else is to be said.
         places: Where the base could be made to stand; `task` has it at the one of these that was chosen.
-        elsewhere: Whether another of them may do what this one cannot.
+        elsewhere: Whether another place, of which there is no run, may do what this one cannot.
+        others: The runs at other places and with other rigid links, of which this one was chosen.
     """
 
     task: Task
@@ -71,6 +71,7 @@ class Run:
     notes: list[str] = field(default_factory=list)
     places: BasePlaces | None = None
     elsewhere: bool = False
+    others: tuple[Run, ...] = ()
 
     @contextmanager
     def kept(self) -> Iterator[None]:
@@ -96,33 +97,22 @@ class Run:
         return () if asked is None else why_impossible(asked)
 
     @property
+    def excluded(self) -> tuple[str, ...]:
+        """Why no shape can do the task with this place and rigid link, as far as that is proven."""
+        proven = self.bound is not None and self.bound.excludes
+        return self.impossible or ((self._bound.sentence,) if proven and self._bound is not None else ())
+
+    @property
+    def _bound(self) -> Bound | None:
+        """What is proven of all shapes, with whatever place and rigid link there is a choice of."""
+        bounds = [run.bound for run in (self, *self.others)]
+        return Bound.least_of([each for each in bounds if each is not None]) if all(bounds) else None
+
+    @property
     def kept_back(self) -> float:
         """Which share of the time the search leaves for looking at all targets."""
         count = len(self.task.targets)
         return 0.0 if self.part is self.task else min(count / (count + _AS_LONG), 1.0 - _LEAST_SEARCH)
-
-    def prove(self) -> None:
-        """Bound how little any shape can miss, unless the search was stopped already."""
-        if self.watch.interrupted:
-            self.notes.append("nothing was proven: the search was stopped before")
-            return
-        if self.task.is_partial:
-            self.notes.append("nothing was proven: which part of a surface is left is not bounded")
-            return
-        self.complete = True
-        watch = self.watch.within(_PROOF_TIME)
-        certifier = Certifier(
-            self.part,
-            float(self.task.tolerances.min()),
-            self.search.polishing.designs,
-            self.search.polishing.keep,
-            watch,
-            self.seed,
-        )
-        with self.watch.on("proving"):
-            self.bound = certifier.certificate()
-        if watch.interrupted:
-            self.notes.append("the proof was stopped early: more time may prove more")
 
     def solution(self) -> Solution:
         """Rank what was found and say what it is worth."""
@@ -157,7 +147,7 @@ class Run:
             designs,
             self.search.starts,
             self.watch.timing(),
-            self.bound if self.part is self.task else bound_of_all(self.bound, task, designs),
+            self._bound if self.part is self.task else bound_of_all(self._bound, task, designs),
             notes=(*self.notes, *filter(None, [whole.note, no_time])),
             breakdown="".join(traceback.format_exception(self.broke_off)) if self.broke_off else "",
         )
@@ -181,10 +171,8 @@ class Run:
             return Status.FOUND, ()
         if self.broke_off is not None:
             return Status.FAILED, ()
-        if self.impossible and not self.elsewhere:
-            return Status.PROVEN_IMPOSSIBLE, self.impossible
-        if self.bound is not None and self.bound.excludes and not self.elsewhere:
-            return Status.PROVEN_IMPOSSIBLE, (self.bound.sentence,)
+        if all(run.excluded and not run.elsewhere for run in (self, *self.others)):
+            return Status.PROVEN_IMPOSSIBLE, self.excluded
         if self.search.polishing.breakdowns and not (
             self.search.polishing.designs or self.search.polishing.blocked
         ):
@@ -202,6 +190,50 @@ def _and_others(best: tuple[Design, ...], known: Sequence[Design]) -> tuple[Desi
     """
     taken = {id(design.arm) for design in best}
     return (*best, *(design for design in known if id(design.arm) not in taken))
+
+
+def prove_run(run: Run) -> None:
+    """Bound how little any shape can miss, unless the search was stopped already.
+
+    Args:
+        run: The run, whose search is over; the bound is of what was not chosen, too.
+    """
+    if run.watch.interrupted:
+        run.notes.append("nothing was proven: the search was stopped before")
+        return
+    if run.task.is_partial:
+        run.notes.append("nothing was proven: which part of a surface is left is not bounded")
+        return
+    if not run.task.robot.rigid_link.is_fixed:
+        run.notes.append("nothing was proven: a rigid link in ranges is not bounded, one of given lengths is")
+        return
+    run.complete = True
+    watch, stopped = run.watch.within(_PROOF_TIME), False
+    with run.watch.on("proving"):
+        own = _certifier(run, watch)
+        known = own.search()
+        # What is not to be chosen is soon excluded, mostly; the time that is left is for what was.
+        for number, other in enumerate(run.others):
+            share = watch.within(watch.remaining / (len(run.others) + 1 - number))
+            other.bound = _certifier(other, share).bound(known)
+            known = known if other.bound is None else other.bound.best_found
+            stopped |= share.interrupted
+        run.bound = own.bound(known)
+    if stopped or watch.interrupted:
+        run.notes.append("the proof was stopped early: more time may prove more")
+    if run.elsewhere and run.bound is not None and run.bound.lower_bound > 0.0:
+        run.notes.append("what is proven holds where the base was found to stand")
+
+
+def _certifier(run: Run, watch: Watch) -> Certifier:
+    return Certifier(
+        run.part,
+        float(run.task.tolerances.min()),
+        run.search.polishing.designs,
+        run.search.polishing.keep,
+        watch,
+        run.seed,
+    )
 
 
 def bound_of_all(bound: Bound | None, task: Task, designs: tuple[Design, ...]) -> Bound | None:

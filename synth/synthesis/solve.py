@@ -6,9 +6,9 @@ import math
 from typing import TYPE_CHECKING
 
 from synth.synthesis.arguments import checked_task
+from synth.synthesis.choosing import chosen, leaves_a_choice
 from synth.synthesis.many_targets import part_of
-from synth.synthesis.placing import placed
-from synth.synthesis.run import Run
+from synth.synthesis.run import Run, prove_run
 from synth.synthesis.search import ALTERNATIVES
 from synth.watch import Watch
 
@@ -41,7 +41,7 @@ def solve(
         warm_start: The solution of a task nearby, of the same robot: targets a few millimetres or
             centimetres away. If one of its two best shapes, polished for this task, reaches every target
             it is returned, with no other shapes beside it. If not, the whole search follows. Where the
-            base is free it is not used.
+            base is free, or the rigid link is chosen from a catalogue, it is not used.
         alternatives: How many other shapes are looked for once one reaches every target: those that a person
             would want, which see `ranking`; where there are none, so many other start points are polished.
             Where no shape reaches every target, at most two are polished that promise nothing better than the
@@ -68,8 +68,8 @@ def solve(
         time_limit=time_limit,
         is_up=watch.is_up,
     )
-    if task.places is not None:
-        run = placed(task, seed, watch, alternatives)
+    if leaves_a_choice(task):
+        run = chosen(task, seed, watch, alternatives)
     else:
         run = Run(task, part_of(task, seed, watch), seed, watch, alternatives)
         near = warm_start.designs if warm_start is not None and warm_start.task.robot == task.robot else ()
@@ -78,7 +78,7 @@ def solve(
                 run.search.run()
     if prove and run.broke_off is None:
         with run.kept(), watch.keeping_back(run.kept_back):
-            run.prove()
+            prove_run(run)
     return run.solution()
 
 

@@ -23,6 +23,7 @@ ONE = "<one>"
 RANGE = "<range>"
 TEXT = "<text>"
 MAPPING = "<mapping>"
+ONE_OF = "<one of>"
 SMALLEST = 1e-9
 LARGEST = 1e6
 
@@ -69,6 +70,11 @@ PositiveOrRange = Annotated[
     Annotated[Positive, Tag(ONE)] | Annotated[Pair[Positive], Tag(RANGE)],
     Discriminator(lambda value: RANGE if isinstance(value, list) else ONE),
 ]
+
+
+def default_name(kind: str, index: int) -> str:
+    """Return what the entry at an index is called if it states no name."""
+    return f"{kind} {index + 1}"
 
 
 def ends(value: float | list[float]) -> tuple[float, float]:

@@ -22,7 +22,7 @@ from synth.robot import (
     turned,
 )
 from synth.surfaces import Scan, Surface, TriangleMesh, plane_within
-from synth.task.entry_types import BoxEntry, CapsuleEntry, SphereEntry, ends
+from synth.task.entry_types import BoxEntry, CapsuleEntry, SphereEntry, default_name, ends
 from synth.task.hardware_distances import off_the_hardware
 from synth.task.model import DEFAULT_TOLERANCE, Approach, Obstacle, PointTarget, Task, sampled
 from synth.task.robot_values import to_interval
@@ -183,11 +183,6 @@ def _to_surface(
         region=region,
         margin=0.0 if entry.margin is None else entry.margin / per_metre,
     )
-
-
-def default_name(kind: str, index: int) -> str:
-    """Return what the entry at an index is called if it states no name."""
-    return f"{kind} {index + 1}"
 
 
 def _to_target(entry: TargetEntry, per_metre: float, name: str) -> PointTarget:

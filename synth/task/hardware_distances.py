@@ -29,12 +29,12 @@ def off_the_hardware(measured: Mapping[str, float], robot: Robot, error: float =
     Returns:
         A sentence for each that is wrong, by its name.
     """
-    rigid = robot.rigid_link
+    links = robot.possible_rigid_links
     known = {
         "d12": (robot.d12, robot.d12),
         "d34": (robot.d34, robot.d34),
-        "d35": (rigid.d35.lower, rigid.d35.upper),
-        "d45": (rigid.d45.lower, rigid.d45.upper),
+        "d35": (min(link.d35.lower for link in links), max(link.d35.upper for link in links)),
+        "d45": (min(link.d45.lower for link in links), max(link.d45.upper for link in links)),
     }
     wrong = {}
     for name, (low, high) in known.items():

@@ -16,7 +16,8 @@ from synth.files import Document, KeyPath, key_text, read_file, read_text
 from synth.names import did_you_mean
 from synth.robot import PRESETS
 from synth.surfaces import read_corners, read_points
-from synth.task.entry_values import default_name, to_task
+from synth.task.entry_types import default_name
+from synth.task.entry_values import to_task
 from synth.task.model import Task
 from synth.task.robot_schema import RobotEntry, RobotFile
 from synth.task.robot_values import to_robot

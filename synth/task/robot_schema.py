@@ -9,11 +9,15 @@ from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator
 from synth.robot import no_triangle
 from synth.task.entry_types import (
     MAPPING,
+    ONE,
+    ONE_OF,
+    RANGE,
     TEXT,
     AngleRange,
     Coordinate,
     LengthUnit,
     Name,
+    Pair,
     Positive,
     PositiveOrRange,
     Strict,
@@ -31,11 +35,51 @@ class LinkEntry(Strict):
     max_total_bend_deg: Positive = Field(default_factory=absent, description="no limit if absent")
 
 
-class RigidLinkEntry(Strict):
-    """The rigid link; [low, high] is to be chosen by the synthesis."""
+class LengthsEntry(Strict):
+    """Lengths of which one is chosen."""
 
-    d35: PositiveOrRange = Field(description="distance from P3 to the end effector P5")
-    d45: PositiveOrRange = Field(description="distance from P4 to the end effector P5")
+    one_of: Annotated[list[Positive], Field(min_length=1)] = Field(
+        description="lengths of a catalogue; the first d35 goes with the first d45, and so on"
+    )
+
+
+def _of_length(value: object) -> str:
+    return RANGE if isinstance(value, list) else ONE_OF if isinstance(value, dict) else ONE
+
+
+Length = Annotated[
+    Annotated[Positive, Tag(ONE)]
+    | Annotated[Pair[Positive], Tag(RANGE)]
+    | Annotated[LengthsEntry, Tag(ONE_OF)],
+    Discriminator(_of_length),
+]
+
+
+class RigidLinkEntry(Strict):
+    """The rigid link; [low, high] is to be chosen by the synthesis, and so is one of a catalogue."""
+
+    d35: Length = Field(description="distance from P3 to the end effector P5")
+    d45: Length = Field(description="distance from P4 to the end effector P5")
+    diameter: Positive = Field(default_factory=absent, description="outer diameter; 0 if absent")
+
+
+class CatalogueItemEntry(Strict):
+    """A rigid link of a catalogue."""
+
+    name: Name = Field(default_factory=absent, description="how the result speaks of it")
+    d35: Positive = Field(description="its distance from P3 to the end effector P5")
+    d45: Positive = Field(description="its distance from P4 to the end effector P5")
+    diameter: Positive = Field(
+        default_factory=absent, description="its outer diameter; that of the catalogue if absent"
+    )
+
+
+class CatalogueEntry(Strict):
+    """A catalogue of rigid links, of which the synthesis chooses one."""
+
+    one_of: Annotated[list[CatalogueItemEntry], Field(min_length=1)] = Field(
+        description="rigid links of which one is chosen, in place of d35 and d45"
+    )
     diameter: Positive = Field(default_factory=absent, description="outer diameter; 0 if absent")
 
 
@@ -57,18 +101,26 @@ class RobotEntry(Strict):
     tip_offset: Coordinate = Field(
         default_factory=absent, description="where the link ends, from P3 towards P4; d34 / 2 if absent"
     )
-    rigid_link: RigidLinkEntry = Field(description="the distances d35 and d45 to the end effector")
+    rigid_link: Annotated[
+        Annotated[RigidLinkEntry, Tag(MAPPING)] | Annotated[CatalogueEntry, Tag(ONE_OF)],
+        Discriminator(lambda value: ONE_OF if isinstance(value, dict) and "one_of" in value else MAPPING),
+    ] = Field(description="the distances d35 and d45 to the end effector, or a catalogue of them")
     joint_limits_deg: JointLimitsEntry = Field(
         default_factory=JointLimitsEntry, description="ranges of the joints, in degrees"
     )
 
     @field_validator("rigid_link")
     @classmethod
-    def _triangle(cls, rigid_link: RigidLinkEntry, info: ValidationInfo) -> RigidLinkEntry:
+    def _triangle(
+        cls, rigid_link: RigidLinkEntry | CatalogueEntry, info: ValidationInfo
+    ) -> RigidLinkEntry | CatalogueEntry:
         """Ask for one choice at least with |d35 - d45| <= d34 <= d35 + d45."""
-        if (d34 := info.data.get("d34")) is None:
+        if (d34 := info.data.get("d34")) is None or isinstance(rigid_link, CatalogueEntry):
             return rigid_link
-        if wrong := no_triangle(d34, ends(rigid_link.d35), ends(rigid_link.d45)):
+        d35, d45 = rigid_link.d35, rigid_link.d45
+        if isinstance(d35, LengthsEntry) or isinstance(d45, LengthsEntry):
+            return rigid_link
+        if wrong := no_triangle(d34, ends(d35), ends(d45)):
             raise ValueError(wrong)
         return rigid_link
 

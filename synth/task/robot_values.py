@@ -6,17 +6,33 @@ import math
 from typing import TYPE_CHECKING
 
 from synth.robot import Interval, JointLimits, MalleableLink, RigidLink, Robot
+from synth.task.catalogue import to_rigid_links
 from synth.task.entry_types import ends
+from synth.task.robot_schema import CatalogueEntry, LengthsEntry
 
 if TYPE_CHECKING:
     from synth.task.robot_schema import RobotEntry
 
 
 def to_robot(entry: RobotEntry, per_metre: float, name: str) -> Robot:
-    """Return the robot that an entry describes; `name` if it states none."""
+    """Return the robot that an entry describes; `name` if it states none.
+
+    Raises:
+        InputError: A catalogue of rigid links is wrong; with every mistake at its own key.
+    """
     link, limits, full = entry.link, entry.joint_limits_deg, JointLimits()
     tip_offset = 0.5 * entry.d34 if entry.tip_offset is None else entry.tip_offset
-    bend = link.max_total_bend_deg
+    bend, rigid = link.max_total_bend_deg, entry.rigid_link
+    if (
+        isinstance(rigid, CatalogueEntry)
+        or isinstance(rigid.d35, LengthsEntry)
+        or isinstance(rigid.d45, LengthsEntry)
+    ):
+        rigid_links = to_rigid_links(rigid, entry.d34, per_metre)
+        rigid_link = rigid_links.links[0]
+    else:
+        d35, d45 = to_interval(rigid.d35, per_metre), to_interval(rigid.d45, per_metre)
+        rigid_links, rigid_link = None, RigidLink(d35, d45, (rigid.diameter or 0.0) / per_metre)
     return Robot(
         name=entry.name or name,
         d12=entry.d12 / per_metre,
@@ -28,11 +44,8 @@ def to_robot(entry: RobotEntry, per_metre: float, name: str) -> Robot:
         ),
         d34=entry.d34 / per_metre,
         tip_offset=tip_offset / per_metre,
-        rigid_link=RigidLink(
-            to_interval(entry.rigid_link.d35, per_metre),
-            to_interval(entry.rigid_link.d45, per_metre),
-            (entry.rigid_link.diameter or 0.0) / per_metre,
-        ),
+        rigid_link=rigid_link,
+        rigid_links=rigid_links,
         joint_limits=JointLimits(
             base=full.base if limits.base is None else _radians(limits.base),
             second=full.second if limits.second is None else _radians(limits.second),

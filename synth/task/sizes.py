@@ -127,8 +127,9 @@ def reach_of(robot: Robot) -> float:
     """Return a distance from P1 that P5 never exceeds, m: column, link and rigid link in line."""
     rods = [
         math.hypot(*map(float, robot.end_effector_circle(d35, d45)))
-        for d35 in (robot.rigid_link.d35.lower, robot.rigid_link.d35.upper)
-        for d45 in (robot.rigid_link.d45.lower, robot.rigid_link.d45.upper)
+        for link in robot.possible_rigid_links
+        for d35 in (link.d35.lower, link.d35.upper)
+        for d45 in (link.d45.lower, link.d45.upper)
     ]
     return robot.d12 + robot.link.length.upper + max(rods)
 

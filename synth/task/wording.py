@@ -10,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 from synth.checks import described
 from synth.files import KeyPath, Refused
 from synth.names import did_you_mean, guesses
-from synth.task.entry_types import MAPPING, ONE, RANGE, TEXT
+from synth.task.entry_types import MAPPING, ONE, ONE_OF, RANGE, TEXT
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -40,6 +40,7 @@ _SENTENCES = {
     "too_long": "must be a list of {max_length} numbers, but has {actual_length}",
     "value_error": "{error}",
 }
+_NUMBER_OR_CHOICE = "must be a number, [low, high] or {{one_of: [...]}}, but is {value}"
 _SENTENCES_AT: dict[KeyPath, dict[str, str]] = {
     ("synth",): dict.fromkeys(
         ("int_type", "int_from_float", "greater_than_equal", "less_than_equal"),
@@ -53,6 +54,11 @@ _SENTENCES_AT: dict[KeyPath, dict[str, str]] = {
         }
         for kind in ("surface", "path")
     },
+    **{
+        (key,): dict.fromkeys(("too_short", "too_long", "one_or_range"), _NUMBER_OR_CHOICE)
+        for key in ("d35", "d45")
+    },
+    ("one_of",): {"too_short": "must hold one rigid link at least, but is an empty list"},
     ("base", "choices"): {"too_short": "must hold one place at least, but is an empty list"},
 }
 
@@ -85,21 +91,25 @@ def _path(detail: ErrorDetails) -> KeyPath:
     """Return where it is without the tags of unions; an unknown key, though, is as the user wrote it."""
     place = detail["loc"]
     inner = len(place) - (detail["type"] == "extra_forbidden")
-    return (*(part for part in place[:inner] if part not in {ONE, RANGE, TEXT, MAPPING}), *place[inner:])
+    return (
+        *(part for part in place[:inner] if part not in {ONE, RANGE, ONE_OF, TEXT, MAPPING}),
+        *place[inner:],
+    )
 
 
 def _fields(schema: type[BaseModel], path: Iterable[str | int]) -> dict[str, Any]:
-    """Return the fields of the model that stands at a path."""
+    """Return the fields of the models of which one stands at a path."""
+    schemas = [schema]
     for part in path:
-        if isinstance(part, str) and part in schema.model_fields:
-            schema = _model_in(schema.model_fields[part].annotation) or schema
-    return {field.alias or name: field for name, field in schema.model_fields.items()}
+        inside = [each.model_fields[part].annotation for each in schemas if part in each.model_fields]
+        schemas = [model for annotation in inside for model in _models_in(annotation)] or schemas
+    return {field.alias or name: field for one in schemas for name, field in one.model_fields.items()}
 
 
-def _model_in(annotation: Any) -> type[BaseModel] | None:
+def _models_in(annotation: Any) -> list[type[BaseModel]]:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return annotation
-    return next((model for part in get_args(annotation) if (model := _model_in(part))), None)
+        return [annotation]
+    return [model for part in get_args(annotation) for model in _models_in(part)]
 
 
 def _sentence(detail: ErrorDetails, path: KeyPath, siblings: dict[str, Any]) -> str:
@@ -109,6 +119,8 @@ def _sentence(detail: ErrorDetails, path: KeyPath, siblings: dict[str, Any]) -> 
     if kind == "missing":
         return f"is missing ({siblings[key].description})"
     if kind == "extra_forbidden":
+        if key in siblings:
+            return "belongs to another way of saying this, and cannot stand beside the other keys here"
         known = did_you_mean(key, siblings) or f"; known are {', '.join(siblings)}"
         return f"is not a known key{known}"
     context = detail.get("ctx", {})
@@ -116,7 +128,7 @@ def _sentence(detail: ErrorDetails, path: KeyPath, siblings: dict[str, Any]) -> 
         kind = "one_or_range"
     elif kind == "greater_than_equal" and context["ge"] > 0 >= value:
         kind = "not_positive"
-    template = (_SENTENCES | _SENTENCES_AT.get(path, {})).get(kind)
+    template = (_SENTENCES | _SENTENCES_AT.get(path[-1:], {}) | _SENTENCES_AT.get(path, {})).get(kind)
     if template is None:
         return detail["msg"]
     sentence = template.format(value=described(value), **context)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _PITCH = 3.6  # mm
 _SIZE = 7.5  # pt
 _MOST_TARGETS = 7
-_NAME = 30.0  # mm
+_NAME = 38.0  # mm, with the number before it
 
 
 def listed_targets(solution: Solution) -> Sequence[int]:
@@ -64,10 +64,11 @@ def target_table(page: Page, x: float, y: float, solution: Solution) -> float:
         heads += [("clear, mm", 110.0)] if task.solids else []
     for head, column in heads:
         page.text(x + column, y, head, 7.0, ha="right", color="#555555")
+    indent = 6.0 if max(listed) < 99 else 8.0
     for row, index in enumerate(listed, start=1):
         target, line = task.targets[index], y + _PITCH * row + 0.6
         page.text(x, line, f"{index + 1}", _SIZE, weight="bold")
-        page.text(x + 8.0, line, shortened(target.name, _NAME, _SIZE), _SIZE)
+        page.text(x + indent, line, shortened(target.name, _NAME - indent, _SIZE), _SIZE)
         default = "*" if target.tolerance == DEFAULT_TOLERANCE else ""
         page.text(x + 68.0, line, f"{rounded_down(target.tolerance, digits=2)}{default}", _SIZE, ha="right")
         if results is None:

@@ -145,10 +145,10 @@ def _report_open_rigid_link(
     if markers and "P5" in entry.markers.model_fields_set:
         return
     stated = set() if markers else entry.distances.model_fields_set
-    for name, interval in (("d35", robot.rigid_link.d35), ("d45", robot.rigid_link.d45)):
-        if not interval.is_fixed and name not in stated:
-            message = f"{name} is [low, high] in the robot: give the {name} of this one, or the marker P5"
-            document.report((*path, "markers" if markers else "distances"), message)
+    open_yet = "[low, high]" if robot.rigid_links is None else "one of several"
+    for name in sorted({"d35", "d45"} - _known_lengths(robot).keys() - stated):
+        message = f"{name} is {open_yet} in the robot: give the {name} of this one, or the marker P5"
+        document.report((*path, "markers" if markers else "distances"), message)
 
 
 def _report_coincident_markers(document: Document, path: KeyPath, entry: ConfigurationEntry) -> None:
@@ -188,9 +188,7 @@ def _measurement(
     if wrong := off_the_hardware(measured, robot, of_distances.bound):
         keys = {name: f"distances.{name}" if is_stated else "markers" for name in wrong}
         raise InputError([Mistake(sentence, key=keys[name]) for name, sentence in wrong.items()])
-    rigid = robot.rigid_link
-    known = {"d12": robot.d12, "d34": robot.d34}
-    known |= {key: i.lower for key, i in (("d35", rigid.d35), ("d45", rigid.d45)) if i.is_fixed}
+    known = {"d12": robot.d12, "d34": robot.d34, **_known_lengths(robot)}
     distances = MeasuredDistances.of(measured, of_distances, known)
     return Measurement(
         name=name,
@@ -199,12 +197,21 @@ def _measurement(
             d12=distances["d12"],
             d34=distances["d34"],
             rigid_link=RigidLink(Interval.fixed(distances["d35"]), Interval.fixed(distances["d45"])),
+            rigid_links=None,
         ),
         precision=precision,
         distances=distances,
         markers=markers,
         intended=entry.intended,
     )
+
+
+def _known_lengths(robot: Robot) -> dict[str, float]:
+    """Return d35 and d45 as far as the robot says them, m."""
+    if robot.rigid_links is not None:
+        return {}
+    rigid = robot.rigid_link
+    return {key: i.lower for key, i in (("d35", rigid.d35), ("d45", rigid.d45)) if i.is_fixed}
 
 
 def _between(markers: FloatArray) -> dict[str, float]:

@@ -1,9 +1,10 @@
 """What is fixed in a robot: sizes, ranges, presets."""
 
 from synth.robot.hardware.about_axis_1 import into_turn, turned
-from synth.robot.hardware.hardware import JointLimits, MalleableLink, RigidLink, Robot, no_triangle
+from synth.robot.hardware.hardware import JointLimits, MalleableLink, Robot
 from synth.robot.hardware.interval import Interval, check_interval
 from synth.robot.hardware.presets import PRESETS
+from synth.robot.hardware.rigid_links import RigidLink, RigidLinkChoices, no_triangle
 
 __all__ = [
     "PRESETS",
@@ -11,6 +12,7 @@ __all__ = [
     "JointLimits",
     "MalleableLink",
     "RigidLink",
+    "RigidLinkChoices",
     "Robot",
     "check_interval",
     "into_turn",

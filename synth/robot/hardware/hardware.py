@@ -10,7 +10,7 @@ import numpy as np
 
 from synth.checks import Checks
 from synth.robot.hardware.interval import Interval, check_interval, check_lengths
-from synth.rounding import written_apart
+from synth.robot.hardware.rigid_links import RigidLink, RigidLinkChoices, no_triangle
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 _TURN_AND_ROUNDING = 2.0 * math.pi + 1e-9
 _FULL_TURN_OF_BASE = Interval(-math.pi, math.pi)
 _FULL_TURN_OF_SECOND = Interval(0.0, 2.0 * math.pi)
-_FLAT = 1e-9  # of d34: a triangle that is flat but for rounding is one
 
 
 @dataclass(frozen=True)
@@ -52,33 +51,6 @@ class MalleableLink:
     def max_curvature(self) -> float:
         """Largest curvature of the centreline, 1/m."""
         return 1.0 / self.min_bend_radius
-
-
-@dataclass(frozen=True)
-class RigidLink:
-    """The link from the second joint to the end effector, as distances to the axis points.
-
-    Attributes:
-        d35: Distance from P3 to the end effector P5, m; an interval is chosen by the synthesis.
-        d45: Distance from P4 to P5, m; likewise.
-        diameter: Its outer diameter, m, where it may touch obstacles or the malleable link.
-    """
-
-    d35: Interval
-    d45: Interval
-    diameter: float = 0.0
-
-    def __post_init__(self) -> None:
-        checks = Checks(self)
-        check_lengths(checks, self, "d35")
-        check_lengths(checks, self, "d45")
-        checks.number("diameter", least=0.0)
-        checks.refuse()
-
-    @property
-    def is_fixed(self) -> bool:
-        """Whether the rigid link is given and not to be designed."""
-        return self.d35.is_fixed and self.d45.is_fixed
 
 
 @dataclass(frozen=True)
@@ -116,8 +88,10 @@ class Robot:
         link: The malleable link.
         d34: Distance of the two points P3 and P4 on the second joint's axis.
         tip_offset: Where the link ends on the second axis, counted from P3 towards P4.
-        rigid_link: Distances from P3 and P4 to the end effector P5.
+        rigid_link: Distances from P3 and P4 to the end effector P5; where the synthesis chooses from a
+            catalogue, the one chosen, and the first before that.
         joint_limits: Ranges of both joints.
+        rigid_links: The catalogue from which the rigid link is chosen; None where `rigid_link` says it.
     """
 
     name: str
@@ -127,6 +101,7 @@ class Robot:
     tip_offset: float
     rigid_link: RigidLink
     joint_limits: JointLimits = JointLimits()
+    rigid_links: RigidLinkChoices | None = None
 
     def __post_init__(self) -> None:
         checks = Checks(self)
@@ -135,17 +110,37 @@ class Robot:
         checks.is_a("link", MalleableLink)
         checks.number("d34", above=0.0)
         checks.number("tip_offset")
-        rigid = self.rigid_link
-        if checks.is_a("rigid_link", RigidLink) and not checks.found_in("d34"):
-            d35, d45 = ((one.lower, one.upper) for one in (rigid.d35, rigid.d45))
-            if wrong := no_triangle(self.d34, d35, d45):
-                checks.report("rigid_link", wrong)
+        self._check_rigid_links(checks)
         if checks.is_a("joint_limits", JointLimits):
             for key, limits in (("base", self.joint_limits.base), ("second", self.joint_limits.second)):
                 if limits.upper - limits.lower > _TURN_AND_ROUNDING:
                     wide = f"must be at most one turn wide, but is {limits.upper - limits.lower:g} rad"
                     checks.report(f"joint_limits.{key}", wide)
         checks.refuse()
+
+    def _check_rigid_links(self, checks: Checks) -> None:
+        if self.rigid_links is not None and not checks.is_a("rigid_links", RigidLinkChoices):
+            return
+        if not checks.is_a("rigid_link", RigidLink):
+            return
+        link, given = self.rigid_link, {"rigid_link": self.rigid_link}
+        if self.rigid_links is not None:
+            given = {f"rigid_links.links[{i}]": each for i, each in enumerate(self.rigid_links.links)}
+            if not (link.is_fixed and self.name_of_rigid_link(link.d35.lower, link.d45.lower)):
+                checks.put("rigid_link", self.rigid_links.links[0])
+        for key, each in () if checks.found_in("d34") else given.items():
+            d35, d45 = ((one.lower, one.upper) for one in (each.d35, each.d45))
+            if wrong := no_triangle(self.d34, d35, d45):
+                checks.report(key, wrong)
+
+    @property
+    def possible_rigid_links(self) -> tuple[RigidLink, ...]:
+        """The rigid links of the catalogue, or the one that there is."""
+        return (self.rigid_link,) if self.rigid_links is None else tuple(self.rigid_links.links)
+
+    def name_of_rigid_link(self, d35: float, d45: float) -> str:
+        """Return what the catalogue calls its rigid link of these lengths, m; empty if there is none."""
+        return "" if self.rigid_links is None else self.rigid_links.name_of(d35, d45) or ""
 
     def end_effector_circle(self, d35: ArrayLike, d45: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Return where and how wide P5 circles about the second axis.
@@ -162,25 +157,3 @@ class Robot:
         s35, s45 = np.square(d35), np.square(d45)
         from_p3 = (s35 - s45 + self.d34**2) / (2.0 * self.d34)
         return from_p3 - self.tip_offset, np.sqrt(np.maximum(s35 - from_p3**2, 0.0))
-
-
-def no_triangle(d34: float, d35: tuple[float, float], d45: tuple[float, float]) -> str:
-    """Return why no triangle P3 P4 P5 has sides in these ranges, in any unit of length, or nothing.
-
-    Args:
-        d34: Distance of P3 and P4.
-        d35: Least and largest distance of P3 and P5.
-        d45: Least and largest distance of P4 and P5.
-    """
-    slack, longest = _FLAT * d34, d35[1] + d45[1]
-    if longest < d34 - slack:
-        most, needed = written_apart(longest, d34)
-        return f"no triangle P3 P4 P5: d35 + d45 is at most {most}, less than d34 = {needed}"
-    for longer, shorter, gap in (("d35", "d45", d35[0] - d45[1]), ("d45", "d35", d45[0] - d35[1])):
-        if gap > d34 + slack:
-            least, allowed = written_apart(gap, d34)
-            return (
-                f"no triangle P3 P4 P5: {longer} exceeds {shorter} by at least {least}, "
-                f"more than d34 = {allowed}"
-            )
-    return ""

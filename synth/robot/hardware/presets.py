@@ -6,8 +6,9 @@ import math
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from synth.robot.hardware.hardware import JointLimits, MalleableLink, RigidLink, Robot
+from synth.robot.hardware.hardware import JointLimits, MalleableLink, Robot
 from synth.robot.hardware.interval import Interval
+from synth.robot.hardware.rigid_links import RigidLink
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

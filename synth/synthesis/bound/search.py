@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +17,7 @@ from synth.synthesis.bound.promising import Promising
 from synth.task import Topology
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -59,6 +59,21 @@ class Bound:
     boxes: int
     left_out: tuple[str, ...] = ()
     weighted: bool = False
+
+    @classmethod
+    def least_of(cls, bounds: Sequence[Bound]) -> Bound:
+        """Return what is proven of all shapes, where each is bounded by one of several bounds of a task.
+
+        Args:
+            bounds: Bounds of one task, one at least.
+        """
+        return replace(
+            bounds[0],
+            lower_bound=min(bound.lower_bound for bound in bounds),
+            best_found=min(bound.best_found for bound in bounds),
+            boxes=sum(bound.boxes for bound in bounds),
+            left_out=tuple(dict.fromkeys(word for bound in bounds for word in bound.left_out)),
+        )
 
     @property
     def gap(self) -> float:

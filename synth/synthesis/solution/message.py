@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -115,10 +116,15 @@ def _how_missed(task: Task, check: Verification, index: int) -> str:
 
 def _why_not_exact(task: Task) -> tuple[str, ...]:
     """Return a sentence if algebra knows of no arm at all that meets the targets exactly."""
-    if task.places is not None or exact_arms(task) != ():
+    robot = task.robot
+    with_each = (replace(robot, rigid_link=link) for link in robot.possible_rigid_links)
+    if task.places is not None or any(exact_arms(replace(task, robot=each)) != () for each in with_each):
         return ()
-    count = len(task.targets)
-    return (f"no arm with this rigid link passes exactly through such {count} targets, by algebra",)
+    count, which = (
+        len(task.targets),
+        "this rigid link" if robot.rigid_links is None else "any of the rigid links",
+    )
+    return (f"no arm with {which} passes exactly through such {count} targets, by algebra",)
 
 
 def not_of_revolution(task: Task) -> tuple[str, ...]:
