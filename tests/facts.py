@@ -149,9 +149,10 @@ def broken_facts(facts, task, solution):
     of = [place[target["name"]] for target in content["targets"]]
     if len(of) < len(place):  # of many the worst are told
         task = task.asking_for(task.table.take(np.array(of)))
+    reached = np.array([target["within_tolerance"] for target in content["targets"]])
     return [
         *told,
-        *limits_broken(task, arm, joints),
+        *limits_broken(task, arm, joints[reached] if whole.is_partial else joints),
         *directions_broken(task, arm, joints),
         *_misses_broken(task, arm, content["targets"], joints),
         *(_clearances_broken(task, arm, content["targets"]) if task.obstacles else ()),

@@ -53,14 +53,15 @@ class Covering:
     @property
     def sentence(self) -> str:
         """What is covered, what is missed, and where it is that is not covered, for the user."""
-        of, within = ("area" if self.is_joined else "points"), rounded_up(self.tolerance, digits=2)
+        of, are = ("area", "is") if self.is_joined else ("points", "are")
+        within = rounded_up(self.tolerance, digits=2)
         asked = f", {_percent(self.asked)} is asked" if self.asked < 1.0 else ""
         largest, rms, most = (
             rounded_up(miss, digits=2) for miss in (self.largest, self.rms, self.percentile_95)
         )
         best = f" of the {_percent(self.asked)} covered best" if self.asked < 1.0 else ""
         told = (
-            f"{self.name}: {_percent(self.share)} of its {of} is within {within} mm{asked}; it is missed"
+            f"{self.name}: {_percent(self.share)} of its {of} {are} within {within} mm{asked}; it is missed"
             f"{best} by {rms} mm RMS, {most} mm for 95 %, {largest} mm at most"
         )
         return f"{told}; {self.place}" if len(self.uncovered) else told
