@@ -21,6 +21,7 @@ BLUE, ORANGE, GREY, RED, WALL = "#0072b2", "#d55e00", "#555555", "#b22222", "#7a
 ELEVATION, TOWARDS = 22.0, -62.0  # of who looks, deg
 CUT = 105.0  # deg of the workspace that are left out, so that the arm inside can be seen
 MOST_NAMED = 6  # targets; of more only the numbers are written
+FEW = 500  # samples, of which each has a dot that is seen on its own
 NAME_SIZE = 11.0
 
 
@@ -72,9 +73,18 @@ def draw_targets(axes: Axes3D, solution: Solution, *, named: bool) -> np.ndarray
         axes.plot(*line.T, color="black", linewidth=2.5, zorder=8)
         if named:
             axes.text(*(line[len(line) // 2] + [22.0, 0.0, 28.0]), path.name, fontsize=NAME_SIZE, zorder=9)
-    followed = solution.task.path_of_targets >= 0
+    task, within = solution.task, np.array(solution.best.verification.within_tolerance)
+    for number, surface in enumerate(task.surfaces):
+        of_it = task.surface_of_targets == number
+        for some, colour in ((of_it & within, "black"), (of_it & ~within, RED)):
+            points = 1e3 * task.table.positions[some]
+            size = 4.0 if len(of_it) < FEW else 1.8
+            axes.plot(*points.T, ".", color=colour, markersize=size, markeredgewidth=0.0, zorder=8)
+        if named:
+            top = 1e3 * max(task.table.positions[of_it], key=lambda point: float(point[2]))
+            axes.text(*(top + [22.0, 0.0, 28.0]), surface.name, fontsize=NAME_SIZE, zorder=9)
     for index, target in enumerate(solution.targets, start=1):
-        if followed[index - 1]:
+        if not task.is_of_its_own[index - 1]:
             continue
         position, reached = 1e3 * target.position, 1e3 * target.reached
         marker, colour = ("o", "black") if target.within_tolerance else ("X", RED)
