@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from synth.arrays import FloatArray
 
 LARGEST = 1e6  # of a number in a file, either way
-_MAX_BYTES = 200_000_000
+MAX_BYTES = 200_000_000  # of a file, and of what it holds packed
 MESHES = {".stl": "stl", ".ply": "ply", ".obj": "obj"}
 _MISSING = "needs trimesh to be read, which is not installed: pip install 'malleable-synth[meshes]'"
 
@@ -75,7 +75,19 @@ def read_vertices(path: Path, see_the_time: Callable[[], None] = lambda: None) -
         for each in load(path, see_the_time)
         if hasattr(each, "vertices")
     ]
-    points = np.concatenate(vertices) if vertices else np.empty((0, 3))
+    return finite_points(np.concatenate(vertices) if vertices else np.empty((0, 3)), path)
+
+
+def finite_points(points: FloatArray, path: Path) -> FloatArray:
+    """Return the points of a file without those that have a coordinate that is not a number.
+
+    Args:
+        points: The points, shape (n, 3).
+        path: The file.
+
+    Raises:
+        InputError: There are none, or one is too far away.
+    """
     points = points[np.isfinite(points).all(axis=1)]
     if not len(points):
         raise InputError([Mistake("holds no points", str(path))])
@@ -113,14 +125,14 @@ def content_of(path: Path) -> bytes:
     """
     try:
         with path.open("rb") as stream:
-            content = stream.read(_MAX_BYTES + 1)
+            content = stream.read(MAX_BYTES + 1)
     except FileNotFoundError:
         raise InputError([Mistake("there is no such file", str(path))]) from None
     except (OSError, ValueError) as error:  # ValueError: a name that no file can have
         reason = getattr(error, "strerror", None) or error
         raise InputError([Mistake(f"cannot be read: {reason}", str(path))]) from None
-    if len(content) > _MAX_BYTES:
-        raise InputError([Mistake(f"is larger than {_MAX_BYTES // 1_000_000} MB", str(path))])
+    if len(content) > MAX_BYTES:
+        raise InputError([Mistake(f"is larger than {MAX_BYTES // 1_000_000} MB", str(path))])
     return content
 
 
@@ -132,4 +144,5 @@ def _refuse_too_large(numbers: FloatArray, path: Path) -> None:
     largest = float(np.abs(numbers).max(initial=0.0))
     if largest > LARGEST:
         told = f"{largest:g}" if math.isfinite(largest) else "infinite"
-        raise InputError([Mistake(f"holds the coordinate {told}: {LARGEST:g} is the largest", str(path))])
+        wanted = f"{LARGEST:g} is the largest; a survey's must be moved to where the robot is"
+        raise InputError([Mistake(f"holds the coordinate {told}: {wanted}", str(path))])

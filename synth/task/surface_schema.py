@@ -149,7 +149,9 @@ class SurfaceEntry(Strict):
     """A surface that the workspace shall cover."""
 
     name: Name = Field(default_factory=absent, description="how the result speaks of it")
-    points: _Path = Field(default_factory=absent, description="path of a file of points: CSV, XYZ or PLY")
+    points: _Path = Field(
+        default_factory=absent, description="path of a file of points: CSV, XYZ, PLY or PCD"
+    )
     mesh: _Path = Field(default_factory=absent, description="path of a file of triangles: STL, PLY or OBJ")
     sphere: SphereSurface = Field(default_factory=absent, description="center, radius")
     cylinder: CylinderSurface = Field(default_factory=absent, description="from, to, radius")
