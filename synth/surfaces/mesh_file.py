@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import codecs
 import io
-import math
 import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from synth.errors import InputError, Mistake
+from synth.surfaces.content import content_of, finite_points, refuse_too_far
+from synth.surfaces.mesh_faults import divided_wrongly, is_binary_stl, ply_parts, too_short
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -17,10 +19,15 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
 
-LARGEST = 1e6  # of a number in a file, either way
-MAX_BYTES = 200_000_000  # of a file, and of what it holds packed
+    Fault = Callable[[str, bytes, list[Any]], str]
+
 MESHES = {".stl": "stl", ".ply": "ply", ".obj": "obj"}
+_ASCII = bytes(range(128)) + b"?" * 128
 _MISSING = "needs trimesh to be read, which is not installed: pip install 'malleable-synth[meshes]'"
+_OTHER_LENGTH = (  # of a binary PLY file
+    "its length is not what its header says: it ends too early, or its faces have differing numbers of "
+    "corners, which is not read; write it as triangles"
+)
 
 
 def read_corners(path: Path, see_the_time: Callable[[], None] = lambda: None) -> FloatArray:
@@ -34,27 +41,29 @@ def read_corners(path: Path, see_the_time: Callable[[], None] = lambda: None) ->
         Corners of the triangles that have an area, shape (m, 3, 3), in the unit of the file.
 
     Raises:
-        InputError: The file cannot be read, or holds no triangles.
+        InputError: The file cannot be read, holds no triangles, or what would be read is not what it means.
     """
     if path.suffix.lower() not in MESHES:
         wanted = f"is no file of triangles by its name, which ends in none of {', '.join(MESHES)}"
         raise InputError([Mistake(wanted, str(path))])
-    loaded = load(path, see_the_time)
+    bodies = load(path, see_the_time, divided_wrongly)
+    meshes = [body for body in bodies if len(getattr(body, "faces", ()))]
     try:
-        corners = np.concatenate(
-            [np.asarray(mesh.vertices, dtype=np.float64)[mesh.faces] for mesh in loaded if _has_faces(mesh)]
-        )
+        parts: list[FloatArray] = [np.asarray(mesh.vertices, dtype=np.float64)[mesh.faces] for mesh in meshes]
+        corners = np.concatenate(parts or [np.empty((0, 3, 3))])
     except (ValueError, IndexError, TypeError):
-        corners = np.empty((0, 3, 3))
-    corners = corners[np.isfinite(corners).all(axis=(1, 2))]
+        raise InputError([Mistake("has faces whose corners it does not hold", str(path))]) from None
+    if undefined := np.count_nonzero(~np.isfinite(corners).all(axis=(1, 2))):
+        told = f"holds {undefined} triangles with a corner that is not a number, of {len(corners)}"
+        raise InputError([Mistake(told, str(path))])
+    refuse_too_far(corners, path)
     sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     corners = corners[np.linalg.norm(sides, axis=1) > 0.0]
     if not len(corners):
-        has_points = any(len(getattr(mesh, "vertices", ())) for mesh in loaded)
+        has_points = any(len(getattr(body, "vertices", ())) for body in bodies)
         instead = "; of points alone a surface is told as points: FILE" if has_points else ""
-        raise InputError([Mistake(f"holds no triangle{instead}", str(path))])
-    _refuse_too_large(corners, path)
-    return np.asarray(corners, dtype=np.float64)
+        raise InputError([Mistake(f"holds no triangle that has an area{instead}", str(path))])
+    return np.asarray(corners)
 
 
 def read_vertices(path: Path, see_the_time: Callable[[], None] = lambda: None) -> FloatArray:
@@ -78,71 +87,49 @@ def read_vertices(path: Path, see_the_time: Callable[[], None] = lambda: None) -
     return finite_points(np.concatenate(vertices) if vertices else np.empty((0, 3)), path)
 
 
-def finite_points(points: FloatArray, path: Path) -> FloatArray:
-    """Return the points of a file without those that have a coordinate that is not a number.
+def load(path: Path, see_the_time: Callable[[], None], *faults: Fault) -> list[Any]:
+    """Return the bodies that trimesh finds in a file, whatever is wrong with it told as a mistake.
 
     Args:
-        points: The points, shape (n, 3).
         path: The file.
-
-    Raises:
-        InputError: There are none, or one is too far away.
+        see_the_time: As for `read_corners`.
+        faults: What more may be wrong than that the file is too short.
     """
-    points = points[np.isfinite(points).all(axis=1)]
-    if not len(points):
-        raise InputError([Mistake("holds no points", str(path))])
-    _refuse_too_large(points, path)
-    return points
-
-
-def load(path: Path, see_the_time: Callable[[], None]) -> list[Any]:
-    """Return the bodies that trimesh finds in a file, whatever is wrong with it told as a mistake."""
     content = content_of(path)
     see_the_time()
+    if not content.strip():
+        raise InputError([Mistake("is empty", str(path))])
     try:
         import trimesh  # noqa: PLC0415 - heavy, and not of everybody's installation
     except ImportError:
         raise InputError([Mistake(_MISSING, str(path))]) from None
     kind = MESHES[path.suffix.lower()]
+    stream = io.BytesIO(_in_ascii(kind, content))
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
-            loaded = trimesh.load_scene(io.BytesIO(content), file_type=kind, process=False).dump()
+            bodies = list(_scene(trimesh, stream, kind).dump())
+        wrong = next(filter(None, (fault(kind, content, bodies) for fault in (too_short, *faults))), "")
     except Exception as error:  # noqa: BLE001 - a damaged file breaks trimesh in any way
-        reason = f"{type(error).__name__} in trimesh"
-        raise InputError(
-            [Mistake(f"is no {kind.upper()} file that can be read ({reason})", str(path))]
-        ) from None
+        reason = _OTHER_LENGTH if "unexpected length" in str(error) else f"{type(error).__name__} in trimesh"
+        wrong = f"is no {kind.upper()} file that can be read ({reason})"
+    if wrong:
+        raise InputError([Mistake(wrong, str(path))])
     see_the_time()
-    return list(loaded) if isinstance(loaded, list | tuple) else [loaded]
+    return bodies
 
 
-def content_of(path: Path) -> bytes:
-    """Return what a file holds.
-
-    Raises:
-        InputError: It cannot be read, or is too large.
-    """
-    try:
-        with path.open("rb") as stream:
-            content = stream.read(MAX_BYTES + 1)
-    except FileNotFoundError:
-        raise InputError([Mistake("there is no such file", str(path))]) from None
-    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
-        reason = getattr(error, "strerror", None) or error
-        raise InputError([Mistake(f"cannot be read: {reason}", str(path))]) from None
-    if len(content) > MAX_BYTES:
-        raise InputError([Mistake(f"is larger than {MAX_BYTES // 1_000_000} MB", str(path))])
-    return content
+def _scene(trimesh: Any, stream: io.BytesIO, kind: str) -> Any:
+    # Pictures are not looked for, and corners stand as often as in the file.
+    return trimesh.load_scene(stream, file_type=kind, process=False, skip_materials=True, fix_texture=False)
 
 
-def _has_faces(mesh: Any) -> bool:
-    return bool(len(getattr(mesh, "faces", ())))
-
-
-def _refuse_too_large(numbers: FloatArray, path: Path) -> None:
-    largest = float(np.abs(numbers).max(initial=0.0))
-    if largest > LARGEST:
-        told = f"{largest:g}" if math.isfinite(largest) else "infinite"
-        wanted = f"{LARGEST:g} is the largest; a survey's must be moved to where the robot is"
-        raise InputError([Mistake(f"holds the coordinate {told}: {wanted}", str(path))])
+def _in_ascii(kind: str, content: bytes) -> bytes:
+    """Return a file with names and remarks in ASCII: where they are not, trimesh needs one library more."""
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        content = content.decode("utf-16", errors="replace").encode()
+    content = content.removeprefix(codecs.BOM_UTF8)
+    if kind == "ply":
+        header, rest = ply_parts(content)
+        return header.translate(_ASCII) + (rest.translate(_ASCII) if b"format ascii" in header else rest)
+    return content if kind == "stl" and is_binary_stl(content) else content.translate(_ASCII)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from synth.errors import InputError, Mistake
-from synth.surfaces.mesh_file import MAX_BYTES, content_of, finite_points
+from synth.surfaces.content import MAX_BYTES, content_of, finite_points
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.errors import InputError, Mistake
-from synth.surfaces.mesh_file import LARGEST, content_of, read_vertices
+from synth.surfaces.content import LARGEST, MOVED, content_of
+from synth.surfaces.mesh_file import read_vertices
 from synth.surfaces.pcd_file import read_pcd
 
 if TYPE_CHECKING:
@@ -95,5 +96,5 @@ def _wrong(line: str, *, quotes: bool) -> str:
         if not _NUMBER.fullmatch(cell):
             return f"{name} must be a number such as -12.5 or 3e-2, but {what}"
         if not abs(float(cell)) <= LARGEST:
-            return f"{name} must be a finite number, at most {LARGEST:g} either way, but {what}"
+            return f"{name} must be a finite number, at most {LARGEST:g} either way, but {what}; {MOVED}"
     return ""
