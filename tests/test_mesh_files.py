@@ -68,13 +68,15 @@ def test_a_point_at_a_seam_of_a_texture_is_one_point(tmp_path):
         stl_text(name="Gehäuse"),
         stl_text(SIDES) + stl_text(TRIANGLES[4:], "second") + stl_text([], "empty"),
         stl_text([*TRIANGLES, [0, 0, 1]]),
+        stl_text().replace(b"normal 0 0 0", b"normal -nan(ind) 0 0"),
     ],
-    ids=["binary", "any header", "text", "capitals", "name", "bodies", "no area"],
+    ids=["binary", "any header", "text", "capitals", "name", "bodies", "no area", "no normals"],
 )
-def test_stl_files_are_read_whole(tmp_path, content):
+def test_stl_files_are_read_whole(tmp_path, caplog, content):
     corners = read_corners(written(tmp_path, "part.STL", content))
     assert (len(corners), pytest.approx(AREA)) == (6, area(corners))
     assert np.isclose(Surface("part", TriangleMesh(corners)).samples.areas.sum(), AREA)
+    assert not caplog.records
 
 
 @pytest.mark.parametrize(
@@ -89,9 +91,23 @@ def test_stl_files_are_read_whole(tmp_path, content):
         obj(before="# Gehäuse\n").encode("latin-1"),
         obj().encode("utf-16"),
         obj(faces=SIDES) + "o other\n" + "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS) + "f 6 9 8 7\n",
+        obj(faces=[*SIDES, BASE]).replace("v ", "\tv\t").replace("f 1 ", " f  1 \\\n")
+        + "l 1 2\nf\n# f 1 2 9",
         obj(faces=[*TRIANGLES, [0, 1]]).replace(" 1.0\n", " 1.0 0.5 0.5 0.5\n"),
     ],
-    ids=["plain", "quads", "behind", "normals", "texture", "mark", "latin", "wide", "bodies", "colours"],
+    ids=[
+        "plain",
+        "quads",
+        "behind",
+        "normals",
+        "texture",
+        "mark",
+        "latin",
+        "wide",
+        "bodies",
+        "spaces",
+        "colours",
+    ],
 )
 def test_obj_files_are_read_whole(tmp_path, content):
     corners = read_corners(written(tmp_path, "part.obj", content))
@@ -107,7 +123,7 @@ def test_a_face_that_is_not_convex_is_divided_rightly_or_refused(tmp_path, name,
     if first == 3:  # a fan about the notch
         assert np.isclose(area(read_corners(path)), NOTCHED)
     else:
-        with pytest.raises(InputError, match="not convex"):
+        with pytest.raises(InputError, match="that are not convex"):
             read_corners(path)
 
 
@@ -116,7 +132,7 @@ def test_a_dart_of_four_corners_is_divided_rightly_or_refused(tmp_path, first):
     dart = [[0, 0, 0], [4, 0, 0], [1, 1, 0], [0, 4, 0]]
     path = written(tmp_path, "dart.obj", obj(dart, [np.roll(np.arange(4), first).tolist()]))
     if first % 2:
-        with pytest.raises(InputError, match="not convex"):
+        with pytest.raises(InputError, match="that are not convex"):
             read_corners(path)
     else:
         assert np.isclose(area(read_corners(path)), 4.0)
@@ -150,12 +166,31 @@ PLY_OF_STRIPS = ply("ascii", faces=[[0, 1, 4, 2]]).replace(b"element face", b"el
         ("a.ply", ply("ascii", CORNERS * 1e7), "2e.07: 1e.06 is the largest; a survey must be moved"),
         ("a.ply", PLY_OF_STRIPS, "triangles in strips"),
         ("a.ply", ply("ascii", faces=None), "points: FILE"),
-        ("a.ply", ply("ascii", faces=[[0, 1, 7]]), "PLY|corners it does not hold"),
-        ("a.obj", obj(CORNERS[:3]), "OBJ|corners it does not hold"),
+        ("a.ply", ply("ascii", faces=[[0, 1, 7]]), "corners it does not hold"),
+        ("a.ply", ply("ascii", faces=[BASE, [0, 1, 2, 65536]]), "corners it does not hold"),
+        ("a.ply", ply("binary_big_endian", faces=[[0, 1, -1, 2]]), "corners it does not hold"),
+        ("a.stl", stl_text().replace(b"1.0", b"1,0", 1), "STL"),
+        ("a.ply", ASCII.replace(b"1.0 1.0 1.0", b"1.0 1;0 1.0"), "PLY"),
+        ("a.obj", obj(CORNERS[:3]), "a face has the corner 5, but there are 3"),
+        ("a.obj", obj().replace("v 2.0 2.0 0.0", "v 2.0 2.0"), "a.obj:3: a corner must have three numbers"),
+        ("a.obj", obj().replace("v 2.0 2.0 0.0", "v 2.0 2_0 0.0"), "a.obj:3: a corner must have three"),
+        ("a.obj", obj().replace("v 2.0 2.0 0.0", "v 2.0 2,0 0.0"), "a.obj:3: a corner must have three"),
+        ("a.obj", obj().replace("f 1 2 5", "f 1 2 1.5"), "a.obj:6: a face must have whole numbers"),
+        ("a.obj", obj().replace("f 1 2 5", "f 1 2 0"), "a.obj:6: a face has the corner 0, but there are 5"),
+        ("a.obj", obj().replace("f 1 2 5", "f 1 2 -6"), "a.obj:6: a face has the corner -6"),
         ("a.obj", obj(faces=[]), "points: FILE"),
-        ("a.obj", "<html>not found</html>", "no triangle|OBJ"),
+        ("a.obj", "<html>not found</html>", "no triangle"),
     ],
 )  # fmt: skip
 def test_what_would_be_read_wrongly_is_refused_with_the_reason(tmp_path, name, content, words):
     with pytest.raises(InputError, match=words):
         read_corners(written(tmp_path, name, content))
+
+
+@pytest.mark.parametrize("name", ["a.stl", "b.stl", "a.ply", "b.ply"])
+def test_no_beginning_of_a_file_is_taken_for_the_whole(tmp_path, name):
+    contents = {"a.stl": stl_text(), "b.stl": stl_bytes(), "a.ply": ply("ascii"), "b.ply": BINARY}
+    content = contents[name].rstrip(b"\n")
+    for end in range(1, len(content) - 8, 7):
+        with pytest.raises(InputError):
+            read_corners(written(tmp_path, name, content[:end]))

@@ -17,9 +17,11 @@ if TYPE_CHECKING:
 _ELEMENT = re.compile(rb"^\s*element[ \t]+(\S+)[ \t]+([0-9]{1,12})\s*$", re.MULTILINE)
 _END_OF_HEADER = re.compile(rb"^[ \t]*end_header[ \t]*\r?\n", re.MULTILINE)
 _LAST_WORD = re.compile(rb"endsolid[^\r\n]*\s*\Z", re.IGNORECASE)
-_OBJ_FACE = re.compile(rb"^[ \t]*f[ \t]", re.MULTILINE)
-_OVERLAPPING = 1e-3  # of the area: rounding and damage leave less
-_NOT_CONVEX = "holds faces that are not convex, which would be divided wrongly; write it as triangles"
+OVERLAPPING = 1e-3  # of the area: rounding and damage leave less
+NOT_CONVEX = (
+    "has faces that overlap themselves when divided into triangles, as those that are not convex do; "
+    "write it as triangles"
+)
 _STRIPS = "holds triangles in strips, which are not read; write it with a list for each face"
 
 
@@ -27,7 +29,7 @@ def too_short(kind: str, content: bytes, bodies: Sequence[Any]) -> str:
     """Return in which way a file holds less than it says, or nothing.
 
     Args:
-        kind: "stl", "ply" or "obj"; the last says nothing of what follows.
+        kind: "stl", "ply" or "obj"; the last does not say what follows.
         content: What the file holds.
         bodies: What was read of it.
     """
@@ -74,17 +76,24 @@ def _said(header: bytes) -> dict[bytes, int]:
     return {name: int(number) for name, number in _ELEMENT.findall(header)}
 
 
+def without_corners(kind: str, content: bytes, bodies: Sequence[Any]) -> str:  # noqa: ARG001 - one of several
+    """Return that faces have corners that are not there, or nothing; as for `too_short`."""
+    for body in bodies:
+        faces = np.asarray(getattr(body, "faces", ()))
+        shapes = (np.shape(body.vertices)[1:], faces.shape[1:]) if len(faces) else ((3,), (3,))
+        if shapes != ((3,), (3,)) or faces.min(initial=0) < 0 or faces.max(initial=-1) >= len(body.vertices):
+            return "has faces whose corners it does not hold"
+    return ""
+
+
 def divided_wrongly(kind: str, content: bytes, bodies: Sequence[Any]) -> str:
-    """Return that faces of more than three corners were divided wrongly, or nothing; as for `too_short`."""
+    """Return that faces of a PLY file were divided wrongly, or nothing; as for `too_short`."""
     meshes = [body for body in bodies if len(getattr(body, "faces", ()))]
-    faces = {
-        "obj": lambda: len(_OBJ_FACE.findall(content)),
-        "ply": lambda: _said(ply_parts(content)[0]).get(b"face", 0),
-    }
-    if kind not in faces or sum(len(mesh.faces) for mesh in meshes) <= faces[kind]():
+    given = _said(ply_parts(content)[0]).get(b"face", 0)
+    if kind != "ply" or sum(len(mesh.faces) for mesh in meshes) <= given:
         return ""
-    shares = [overlapping(np.asarray(mesh.vertices, dtype=float), mesh.faces) for mesh in meshes]
-    return _NOT_CONVEX if max(shares) > _OVERLAPPING else ""
+    shares = [overlapping(np.asarray(mesh.vertices, dtype=float), np.asarray(mesh.faces)) for mesh in meshes]
+    return NOT_CONVEX if max(shares) > OVERLAPPING else ""
 
 
 def overlapping(vertices: FloatArray, faces: NDArray[np.integer[Any]]) -> float:

@@ -1,4 +1,4 @@
-"""Triangles and points from files of other programs, by trimesh, which is imported on use."""
+"""Triangles and points from files of other programs: STL and PLY by trimesh, which is imported on use."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ import numpy as np
 
 from synth.errors import InputError, Mistake
 from synth.surfaces.content import content_of, finite_points, refuse_too_far
-from synth.surfaces.mesh_faults import divided_wrongly, is_binary_stl, ply_parts, too_short
+from synth.surfaces.mesh_faults import divided_wrongly, is_binary_stl, ply_parts, too_short, without_corners
+from synth.surfaces.obj_file import read_obj
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -46,13 +47,13 @@ def read_corners(path: Path, see_the_time: Callable[[], None] = lambda: None) ->
     if path.suffix.lower() not in MESHES:
         wanted = f"is no file of triangles by its name, which ends in none of {', '.join(MESHES)}"
         raise InputError([Mistake(wanted, str(path))])
-    bodies = load(path, see_the_time, divided_wrongly)
-    meshes = [body for body in bodies if len(getattr(body, "faces", ()))]
-    try:
-        parts: list[FloatArray] = [np.asarray(mesh.vertices, dtype=np.float64)[mesh.faces] for mesh in meshes]
-        corners = np.concatenate(parts or [np.empty((0, 3, 3))])
-    except (ValueError, IndexError, TypeError):
-        raise InputError([Mistake("has faces whose corners it does not hold", str(path))]) from None
+    bodies = load(path, see_the_time, without_corners, divided_wrongly)
+    parts = [
+        np.asarray(body.vertices, dtype=np.float64)[body.faces]
+        for body in bodies
+        if len(getattr(body, "faces", ()))
+    ]
+    corners = np.concatenate(parts) if parts else np.empty((0, 3, 3))
     if undefined := np.count_nonzero(~np.isfinite(corners).all(axis=(1, 2))):
         told = f"holds {undefined} triangles with a corner that is not a number, of {len(corners)}"
         raise InputError([Mistake(told, str(path))])
@@ -88,7 +89,7 @@ def read_vertices(path: Path, see_the_time: Callable[[], None] = lambda: None) -
 
 
 def load(path: Path, see_the_time: Callable[[], None], *faults: Fault) -> list[Any]:
-    """Return the bodies that trimesh finds in a file, whatever is wrong with it told as a mistake.
+    """Return the bodies in a file, whatever is wrong with it told as a mistake.
 
     Args:
         path: The file.
@@ -99,37 +100,50 @@ def load(path: Path, see_the_time: Callable[[], None], *faults: Fault) -> list[A
     see_the_time()
     if not content.strip():
         raise InputError([Mistake("is empty", str(path))])
-    try:
-        import trimesh  # noqa: PLC0415 - heavy, and not of everybody's installation
-    except ImportError:
-        raise InputError([Mistake(_MISSING, str(path))]) from None
     kind = MESHES[path.suffix.lower()]
-    stream = io.BytesIO(_in_ascii(kind, content))
-    try:
-        with warnings.catch_warnings(), np.errstate(all="ignore"):
-            warnings.simplefilter("ignore")
-            bodies = list(_scene(trimesh, stream, kind).dump())
+    with np.errstate(all="ignore"):  # of numbers that are too large, which are refused later
+        if kind == "obj":
+            bodies: list[Any] = [read_obj(content, path, see_the_time)]
+        else:
+            bodies = _by_trimesh(kind, content, path)
         wrong = next(filter(None, (fault(kind, content, bodies) for fault in (too_short, *faults))), "")
-    except Exception as error:  # noqa: BLE001 - a damaged file breaks trimesh in any way
-        reason = _OTHER_LENGTH if "unexpected length" in str(error) else f"{type(error).__name__} in trimesh"
-        wrong = f"is no {kind.upper()} file that can be read ({reason})"
     if wrong:
         raise InputError([Mistake(wrong, str(path))])
     see_the_time()
     return bodies
 
 
-def _scene(trimesh: Any, stream: io.BytesIO, kind: str) -> Any:
-    # Pictures are not looked for, and corners stand as often as in the file.
-    return trimesh.load_scene(stream, file_type=kind, process=False, skip_materials=True, fix_texture=False)
+def _by_trimesh(kind: str, content: bytes, path: Path) -> list[Any]:
+    try:
+        import trimesh  # noqa: PLC0415 - heavy, and not of everybody's installation
+    except ImportError:
+        raise InputError([Mistake(_MISSING, str(path))]) from None
+    talk = trimesh.util.log
+    was_silent, talk.disabled = talk.disabled, True
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            warnings.filterwarnings("error", "string or file could not be read")  # else the rest is lost
+            scene = trimesh.load_scene(
+                io.BytesIO(_in_ascii(kind, content)),
+                file_type=kind,
+                process=False,
+                skip_materials=True,  # pictures are not looked for
+                fix_texture=False,  # corners stand as often as in the file
+            )
+            return list(scene.dump())
+    except Exception as error:  # noqa: BLE001 - a damaged file breaks trimesh in any way
+        reason = _OTHER_LENGTH if "unexpected length" in str(error) else f"{type(error).__name__} in trimesh"
+        wrong = f"is no {kind.upper()} file that can be read ({reason})"
+        raise InputError([Mistake(wrong, str(path))]) from None
+    finally:
+        talk.disabled = was_silent
 
 
 def _in_ascii(kind: str, content: bytes) -> bytes:
     """Return a file with names and remarks in ASCII: where they are not, trimesh needs one library more."""
-    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        content = content.decode("utf-16", errors="replace").encode()
     content = content.removeprefix(codecs.BOM_UTF8)
-    if kind == "ply":
-        header, rest = ply_parts(content)
-        return header.translate(_ASCII) + (rest.translate(_ASCII) if b"format ascii" in header else rest)
-    return content if kind == "stl" and is_binary_stl(content) else content.translate(_ASCII)
+    if kind == "stl":
+        return content if is_binary_stl(content) else content.translate(_ASCII)
+    header, rest = ply_parts(content)
+    return header.translate(_ASCII) + (rest.translate(_ASCII) if b"format ascii" in header else rest)

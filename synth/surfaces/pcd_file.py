@@ -82,7 +82,8 @@ def read_pcd(path: Path, see_the_time: Callable[[], None] = lambda: None) -> Flo
     see_the_time()
     try:
         header, data = _parted(content)
-        points = _CODINGS[header.coding](header, data) if header.points else np.empty((0, 3))
+        with np.errstate(invalid="ignore"):  # of what is no number in its coding
+            points = _CODINGS[header.coding](header, data) if header.points else np.empty((0, 3))
     except ValueError as error:
         raise InputError([Mistake(f"is no PCD file that can be read: {error}", str(path))]) from None
     see_the_time()
