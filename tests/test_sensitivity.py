@@ -21,7 +21,7 @@ from synth.guide import make_guide
 from synth.guide.instructions import (
     tolerance_sentences,
 )
-from synth.guide.sensitivity import shape_tolerance, tilt_rate
+from synth.guide.sensitivity import shape_tolerance, tilt_rates
 from synth.robot.closest_joints import closest_joints
 from synth.robot.kinematics import Kinematics
 
@@ -83,13 +83,10 @@ def test_bending_a_real_arm_loses_what_the_rates_say():
         skew = new_rotation @ rotation.T
         tilt = 0.5 * np.array([skew[2, 1] - skew[1, 2], skew[0, 2] - skew[2, 0], skew[1, 0] - skew[0, 1]])
         across = tilt - tilt @ rotation[:, 0] * rotation[:, 0]
-        _, misses = bent.closest_joints([target.position for target in task.targets])
-        for target, joints, before, after in zip(
-            task.targets, check.joints, check.misses, misses, strict=True
-        ):
-            rate = tilt_rate(ARM, target.position, joints)
-            bound = np.linalg.norm(new_end - end) + rate * np.linalg.norm(across)
-            assert abs(after - before) <= bound * (1.0 + 1e-2) + 1e-9
+        _, misses = bent.closest_joints(task.table.positions)
+        rates = tilt_rates(ARM, task.table.positions, check.joints)
+        bounds = np.linalg.norm(new_end - end) + rates * np.linalg.norm(across)
+        assert np.all(np.abs(misses - check.misses) <= bounds * (1.0 + 1e-2) + 1e-9)
 
 
 def test_at_a_joint_limit_the_worst_tilt_may_push_past_the_limit():
@@ -103,7 +100,7 @@ def test_at_a_joint_limit_the_worst_tilt_may_push_past_the_limit():
 @given(arms, st.floats(-math.pi, math.pi), st.floats(0.0, 2.0 * math.pi))
 def test_no_tilt_moves_p5_faster_than_its_distance_from_the_links_end(arm, theta1, theta2):
     point = arm.forward_kinematics(theta1, theta2)
-    rate = tilt_rate(arm, point, np.array([theta1, theta2]))
+    (rate,) = tilt_rates(arm, point[None], np.array([[theta1, theta2]]))
     lever = np.linalg.norm(arm.kinematics.forward(0.0, theta2) - arm.end_frame[1])
     assert 0.0 <= rate <= lever * (1.0 + 1e-9)
 
@@ -132,7 +129,26 @@ def test_an_error_of_the_size_that_is_told_loses_no_target(tolerance):
 
 def test_a_joint_that_turns_all_round_has_no_limit_at_its_end():
     arm = make_arm(robot=FREE)
-    for theta1 in (math.pi, math.pi - 1e-3):
-        point = arm.forward_kinematics(theta1, 2.0)
-        rate = tilt_rate(arm, point, np.array([theta1, 2.0]))
-        assert rate == pytest.approx(tilt_rate(arm, arm.forward_kinematics(0.0, 2.0), np.array([0.0, 2.0])))
+    joints = np.array([[0.0, 2.0], [math.pi, 2.0], [math.pi - 1e-3, 2.0]])
+    rates = tilt_rates(arm, arm.forward_kinematics(*joints.T), joints)
+    np.testing.assert_allclose(rates, rates[0])
+
+
+def test_the_rates_of_many_targets_are_those_of_each(monkeypatch):
+    """Also at the limits of either joint and of both, on the surface and off it; and P5 is asked for once."""
+    base, second = ROBOT.joint_limits.base, ROBOT.joint_limits.second
+    joints = np.array(
+        [[a, b] for a in (base.lower, 2.0, base.upper) for b in (second.lower, 2.0, second.upper)]
+    )
+    points = ARM.forward_kinematics(*np.tile(joints, (2, 1)).T)
+    points[9:] += 1e-3 * directions(np.random.default_rng(2), 9)
+    joints, _ = ARM.closest_joints(points)
+    alone = [tilt_rates(ARM, points[[i]], joints[[i]])[0] for i in range(18)]
+    asked, forward = [], Kinematics.forward
+    monkeypatch.setattr(Kinematics, "forward", lambda *given: asked.append(1) or forward(*given))
+    rates = tilt_rates(ARM, points, joints)
+    assert len(asked) == 1
+    np.testing.assert_allclose(rates, alone, rtol=1e-12)
+    levers = np.linalg.norm(forward(ARM.kinematics, 0.0, joints[:, 1]) - ARM.end_frame[1], axis=1)
+    np.testing.assert_allclose(rates[[0, 2, 6, 8]], levers[[0, 2, 6, 8]])  # no joint can make the best of it
+    assert rates[4] < 0.9 * levers[4]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.robot import BasePose
+from synth.robot import turned
 from synth.synthesis import Displacements, TargetsSeen, displaced, rotations
 
 if TYPE_CHECKING:
@@ -72,18 +72,11 @@ def shape_tolerance(task: Task, design: Design) -> ShapeTolerance:
         return ShapeTolerance()
     slack = task.tolerances - check.misses
     within = np.argsort(slack, kind="stable")
-    tilt, tilted = math.inf, within[0]
-    # No tilt moves P5 faster than at its distance from the link's end.
-    lever = float(np.linalg.norm(arm.kinematics.forward(0.0, 0.0) - arm.end_frame[1]))
-    for index in within.tolist():
-        if slack[index] >= min(tilt, LARGEST_TILT) * lever:
-            break
-        rate = tilt_rate(arm, task.table.positions[index], check.joints[index])
-        bound = min(slack[index] / max(rate, _NO_RATE), LARGEST_TILT)
-        if bound < tilt:
-            tilt, tilted = bound, index
+    rates = tilt_rates(arm, task.table.positions, check.joints)
+    bounds = np.minimum(slack / np.maximum(rates, _NO_RATE), LARGEST_TILT)
+    tilted = int(within[bounds[within].argmin()])
     first = int(within[0])
-    position, direction = _tried(task, design, float(slack[first]), float(min(tilt, LARGEST_TILT)))
+    position, direction = _tried(task, design, float(slack[first]), float(bounds[tilted]))
     return ShapeTolerance(position, task.targets[first].name, direction, task.targets[tilted].name)
 
 
@@ -116,8 +109,8 @@ def _tried(task: Task, design: Design, position: float, direction: float) -> tup
     return position, direction
 
 
-def tilt_rate(arm: Arm, target: FloatArray, joints: FloatArray) -> float:
-    """Return the rate at which a target's miss grows with a tilt of axis 2 in the worst direction, m/rad.
+def tilt_rates(arm: Arm, targets: FloatArray, joints: FloatArray) -> FloatArray:
+    """Return the rates at which the misses of targets grow with a tilt of axis 2 in the worst direction.
 
     At joint 1 = 0, a tilt w (rad, across axis 2) about the link's end p moves P5 by w x (P5 - p). Of
     this only the part along the miss counts, n = (P5 - target) / |P5 - target|, because the joints are
@@ -127,44 +120,53 @@ def tilt_rate(arm: Arm, target: FloatArray, joints: FloatArray) -> float:
 
     Args:
         arm: The robot in its shape.
-        target: The target in the task frame, shape (3,), m.
-        joints: Its joint angles (theta1, theta2) with the least miss, shape (2,), rad.
+        targets: The targets in the task frame, shape (n, 3), m.
+        joints: Their joint angles (theta1, theta2) with the least misses, shape (n, 2), rad.
 
     Returns:
-        max |(P5 - p) x n . w| over unit tilts w across axis 2 and all such n, m/rad.
+        max |(P5 - p) x n . w| over unit tilts w across axis 2 and all such n, shape (n,), m/rad.
     """
-    theta1, theta2 = float(joints[0]), float(joints[1])
-    end_effector = arm.base.to_base(arm.forward_kinematics(0.0, theta2))
-    # Joint 1 turns about z as the base's yaw does; the target is turned back instead of the arm.
-    away = end_effector - BasePose(yaw=theta1).to_base(arm.base.to_base(target))
-    miss = float(np.linalg.norm(away))
-    normals = away[None] / miss if miss > _ON_THE_SURFACE else _normals(arm, end_effector, theta1, theta2)
+    end_effectors = arm.kinematics.forward(0.0, joints[:, 1])
+    away = end_effectors - turned(arm.base.to_base(targets), -joints[:, 0])
+    misses = np.linalg.norm(away, axis=1)
+    off = misses > _ON_THE_SURFACE
+    among = np.empty((len(targets), 3, 3))  # projections onto all such n
+    among[off] = _dyads(away[off] / misses[off, None])
+    among[~off] = _unmoved(arm, end_effectors[~off], joints[~off])
     rotation, end = arm.end_frame
-    tilted = np.cross(rotation[:, 1:].T, end_effector - end)  # about the two directions across axis 2
-    return float(np.linalg.norm(normals @ tilted.T, ord=2))
+    tilted = np.cross(
+        rotation[:, 1:].T, (end_effectors - end)[:, None]
+    )  # about the two directions across axis 2
+    return np.asarray(np.linalg.norm(tilted @ among, ord=2, axis=(1, 2)))
 
 
-def _normals(arm: Arm, end_effector: FloatArray, theta1: float, theta2: float) -> FloatArray:
-    """Return an orthonormal basis of the directions, at joint 1 = 0, in which no joint can move P5.
+def _unmoved(arm: Arm, end_effectors: FloatArray, joints: FloatArray) -> FloatArray:
+    """Return projections onto the directions, at joint 1 = 0, in which no joint can move P5.
 
     Args:
         arm: The robot in its shape.
-        end_effector: P5 at theta1 = 0 in the base frame, shape (3,), m.
-        theta1: Angle of joint 1, which tells whether it is at a limit, rad.
-        theta2: Angle of joint 2, rad.
+        end_effectors: P5 at theta1 = 0 in the base frame, shape (n, 3), m.
+        joints: Joint angles, which tell whether a joint is at a limit, shape (n, 2), rad.
 
     Returns:
-        The directions, shape (k, 3); k = 1 where the surface is regular and the joints are free.
+        The projections, shape (n, 3, 3); of rank 1 where the surface is regular and the joints are free.
     """
     limits = arm.robot.joint_limits
-    about_axis_1 = np.array([-end_effector[1], end_effector[0], 0.0])
-    about_axis_2 = np.cross(arm.circle.axis, end_effector - arm.circle.centre)
-    velocities = np.stack([about_axis_1, about_axis_2])
-    # A range of a whole turn has ends, but no limits.
-    free = [
-        interval.contains(angle, slack=-_AT_A_LIMIT) or interval.upper - interval.lower >= _WHOLE_TURN
-        for interval, angle in ((limits.base, theta1), (limits.second, theta2))
-    ]
-    _, singular, directions = np.linalg.svd(velocities[free])
-    rank = int(np.sum(singular > _NEARLY_SINGULAR * np.max(singular, initial=0.0)))
-    return np.asarray(directions[rank:])
+    about_axis_1 = np.cross([0.0, 0.0, 1.0], end_effectors)
+    about_axis_2 = np.cross(arm.circle.axis, end_effectors - arm.circle.centre)
+    velocities = np.stack([about_axis_1, about_axis_2], axis=1)
+    for joint, interval in enumerate((limits.base, limits.second)):
+        if interval.upper - interval.lower < _WHOLE_TURN:  # a range of a whole turn has ends, but no limits
+            inside = (
+                np.abs(joints[:, joint] - interval.middle)
+                <= 0.5 * (interval.upper - interval.lower) - _AT_A_LIMIT
+            )
+            velocities[~inside, joint] = 0.0
+    _, singular, directions = np.linalg.svd(velocities)
+    moved = singular > _NEARLY_SINGULAR * singular.max(axis=1, initial=0.0, keepdims=True)
+    return np.asarray(np.eye(3) - np.einsum("nk,nki,nkj->nij", moved, directions[:, :2], directions[:, :2]))
+
+
+def _dyads(directions: FloatArray) -> FloatArray:
+    """Return projections onto unit vectors, shape (n, 3), as (n, 3, 3)."""
+    return directions[:, :, None] * directions[:, None]
