@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.robot.hardware import turned
+from synth.robot.hardware import into_turn, turned
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -88,15 +88,20 @@ def _closest(
 
 def _grid_misses(kinematics: Kinematics, grid: FloatArray, points: FloatArray, base: Interval) -> FloatArray:
     """Return F on grids of theta2 of shape (n, m), or (1, m) for the same one everywhere; (n, m), m."""
-    x, y, z = np.moveaxis(kinematics.forward(0.0, grid), -1, 0)
+    x, y, z = kinematics.unturned(np.cos(grid), np.sin(grid))
     rho, rho_p = np.hypot(x, y), np.hypot(points[:, 0], points[:, 1])[:, None]
     squared = (rho - rho_p) ** 2 + (z - points[:, 2:]) ** 2
-    # How far beyond joint 1's range theta1 would have to be to keep P5 in the half-plane of the point.
-    turn = np.arctan2(points[:, 1], points[:, 0])[:, None] - (np.arctan2(y, x) + base.middle)
-    turn -= 2.0 * np.pi * np.round(turn / (2.0 * np.pi))
-    beyond = np.maximum(np.abs(turn) - 0.5 * (base.upper - base.lower), 0.0)
-    if beyond.any():
-        squared += 4.0 * rho * rho_p * np.sin(0.5 * beyond) ** 2
+    # How far beyond joint 1's range theta1 would have to be to keep P5 in the half-plane of the point; by its
+    # extreme angles most grids are nowhere beyond.
+    own, half = np.arctan2(y, x), 0.5 * (base.upper - base.lower)
+    low, high = own.min(axis=1), own.max(axis=1)
+    wanted = np.arctan2(points[:, 1], points[:, 0])
+    turn = into_turn(wanted - 0.5 * (low + high), base.middle) - base.middle
+    near = np.flatnonzero(np.abs(turn) + 0.5 * (high - low) > half)
+    if len(near):
+        rows = near if len(own) > 1 else [0]
+        beyond = np.abs(into_turn(wanted[near, None] - own[rows], base.middle) - base.middle) - half
+        squared[near] += 4.0 * rho[rows] * rho_p[near] * np.sin(0.5 * np.maximum(beyond, 0.0)) ** 2
     return np.asarray(np.sqrt(squared))
 
 
@@ -126,11 +131,17 @@ def _bottom(
     base: Interval,
 ) -> FloatArray:
     """Return theta2 at the bottoms of valleys, shape (k,), rad; each between the ends of its bracket."""
+    v, t = kinematics.frame[:, 1], kinematics.frame[:, 2]
+    azimuth = np.arctan2(points[:, 1], points[:, 0])
 
     def slope(theta2: FloatArray) -> FloatArray:
-        theta1 = kinematics.best_theta1(theta2, points, base)
-        off = kinematics.forward(0.0, theta2) - turned(points, -theta1)
-        return np.asarray(np.einsum("ki,ki->k", off, kinematics.tangent(theta2)))
+        cos, sin = np.cos(theta2), np.sin(theta2)
+        x, y, z = kinematics.unturned(cos, sin)
+        theta1 = np.clip(into_turn(azimuth - np.arctan2(y, x), base.middle), base.lower, base.upper)
+        there = turned(points, -theta1)
+        off = (x - there[:, 0], y - there[:, 1], z - there[:, 2])
+        across, along = (sum(part * axis[i] for i, part in enumerate(off)) for axis in (v, t))
+        return np.asarray(kinematics.radius * (cos * across + sin * along))
 
     lower, middle, upper = bracket
     at_lower, at_middle, at_upper = slope(lower), slope(middle), slope(upper)

@@ -38,9 +38,13 @@ class Kinematics:
     def forward(self, theta1: ArrayLike, theta2: ArrayLike) -> FloatArray:
         """Return P5 for joint angles, shape (...), rad; of shape (..., 3), m."""
         second = np.asarray(theta2, dtype=np.float64)
+        return turned(np.stack(self.unturned(np.cos(second), np.sin(second)), axis=-1), theta1)
+
+    def unturned(self, cos: FloatArray, sin: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return x, y and z of P5 at theta1 = 0 for cosines and sines of theta2, shapes (...), m."""
         v, t = self.frame[..., 1], self.frame[..., 2]
-        circle = np.sin(second)[..., None] * v - np.cos(second)[..., None] * t
-        return turned(self.centre + self.radius[..., None] * circle, theta1)
+        x, y, z = (self.centre[..., i] + self.radius * (sin * v[..., i] - cos * t[..., i]) for i in range(3))
+        return x, y, z
 
     def tangent(self, theta2: FloatArray) -> FloatArray:
         """Return the derivative of P5 by theta2 at theta1 = 0, shape (..., 3), m."""
