@@ -137,7 +137,11 @@ def tilt_rates(arm: Arm, targets: FloatArray, joints: FloatArray) -> FloatArray:
     tilted = np.cross(
         rotation[:, 1:].T, (end_effectors - end)[:, None]
     )  # about the two directions across axis 2
-    return np.asarray(np.linalg.norm(tilted @ among, ord=2, axis=(1, 2)))
+    along = tilted @ among
+    first, second = np.square(along).sum(axis=2).T
+    # The larger singular value of two rows, by their squares and their product.
+    apart = np.hypot(0.5 * (first - second), np.einsum("ni,ni->n", along[:, 0], along[:, 1]))
+    return np.asarray(np.sqrt(0.5 * (first + second) + apart))
 
 
 def _unmoved(arm: Arm, end_effectors: FloatArray, joints: FloatArray) -> FloatArray:
