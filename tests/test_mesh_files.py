@@ -47,6 +47,11 @@ def test_ply_files_are_read_whole(tmp_path, caplog, coding, given):
     assert not caplog.records  # a picture that a remark names is not looked for
 
 
+def test_the_corners_of_an_obj_file_are_points_where_there_are_no_faces(tmp_path):
+    path = written(tmp_path, "scan.obj", obj([*CORNERS, [np.nan, 0, 0]], faces=[]))
+    assert np.array_equal(read_points(path), CORNERS)
+
+
 def test_a_point_at_a_seam_of_a_texture_is_one_point(tmp_path):
     content = ply("ascii", faces=SIDES).decode()
     content = content.replace("end_header", "property list uchar float texcoord\nend_header")

@@ -68,7 +68,7 @@ def read_corners(path: Path, see_the_time: Callable[[], None] = lambda: None) ->
 
 
 def read_vertices(path: Path, see_the_time: Callable[[], None] = lambda: None) -> FloatArray:
-    """Read the points of a PLY file; those with a coordinate that is not a number are passed over.
+    """Read the points of a PLY or OBJ file; those with a coordinate that is not a number are passed over.
 
     Args:
         path: The file.

@@ -1,4 +1,4 @@
-"""Points from a CSV, XYZ, PLY or PCD file: a scanned surface, of up to some millions of them."""
+"""Points from a CSV, XYZ, PLY, OBJ or PCD file: a scanned surface, of up to some millions of them."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ def read_points(path: Path, see_the_time: Callable[[], None] = lambda: None) -> 
     """Read the points of a CSV file, one a line: x, y and z, under a header of these names or none.
 
     In a file whose name ends in `.xyz` spaces stand between, `#` begins a remark, and what follows the third
-    number does not count. Of a `.ply` file the vertices are the points, and of a `.pcd` file those that are
-    numbers.
+    number does not count. Of `.ply` and `.obj` files the vertices are the points; of these and of `.pcd`
+    files those count that are numbers.
 
     Args:
         path: The file; empty lines are passed over.
@@ -41,7 +41,7 @@ def read_points(path: Path, see_the_time: Callable[[], None] = lambda: None) -> 
     Raises:
         InputError: The file cannot be read or is wrong; with the first ten mistakes and their lines.
     """
-    if reader := {".ply": read_vertices, ".pcd": read_pcd}.get(path.suffix.lower()):
+    if reader := {".ply": read_vertices, ".obj": read_vertices, ".pcd": read_pcd}.get(path.suffix.lower()):
         return reader(path, see_the_time)
     try:
         lines = content_of(path).decode("utf-8-sig").splitlines()

@@ -18,7 +18,8 @@ class PathEntry(Strict):
         default_factory=absent, description="points that it passes, [x, y, z] each, in the task frame"
     )
     csv: Annotated[str, Field(min_length=1)] = Field(
-        default_factory=absent, description="in their place the path of a file of them: CSV, XYZ, PLY or PCD"
+        default_factory=absent,
+        description="in their place the path of a file of them: CSV, XYZ, PLY, OBJ or PCD",
     )
     closed: bool = Field(default=False, description="whether it goes back to its first waypoint")
     interpolation: Annotated[Interpolation, Field(strict=False), BeforeValidator(without_case)] = Field(

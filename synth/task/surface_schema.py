@@ -150,7 +150,7 @@ class SurfaceEntry(Strict):
 
     name: Name = Field(default_factory=absent, description="how the result speaks of it")
     points: _Path = Field(
-        default_factory=absent, description="path of a file of points: CSV, XYZ, PLY or PCD"
+        default_factory=absent, description="path of a file of points: CSV, XYZ, PLY, OBJ or PCD"
     )
     mesh: _Path = Field(default_factory=absent, description="path of a file of triangles: STL, PLY or OBJ")
     sphere: SphereSurface = Field(default_factory=absent, description="center, radius")

@@ -57,6 +57,7 @@ RIGHT = {
     "obj": [obj().encode(), obj(told="{0}/1/1", before="vt 0 0\n").encode(), obj(told="{1}").encode()],
     "pcd": [pcd_file(columns, coding) for columns in (XYZ, MORE) for coding in CODINGS],
     "points of ply": [ply("ascii", POINTS, None), ply("binary_little_endian", POINTS, None), ply("ascii")],
+    "points of obj": [obj(POINTS, []).encode(), obj().encode()],
     "csv": [b"x,y,z\n" + TABLE.encode(), TABLE.encode()],
     "xyz": [b"# a scan\n" + TABLE.replace(",", " ").encode(), TABLE.replace(",", "\t").encode()],
 }  # fmt: skip
