@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 _FINER = (4, 16, 64)  # times the cells of the samples, where these do not prove that the surface is covered
-_MOST_CELLS = 60_000  # that are looked at together
+_MOST_CELLS = 120_000  # that are looked at together
 
 
 def verify(task: Task, arm: Arm, joints: FloatArray | None = None, *, keep: bool = False) -> Verification:
@@ -136,8 +136,11 @@ class _Level:
         from scipy.spatial import cKDTree  # type: ignore[import-untyped]  # noqa: PLC0415
 
         proven = self._counts & (self._most <= surface.tolerance)
-        away = cKDTree(self._cells.points[~proven]).query(cells.points)[0]
-        is_known = away > float(self._cells.radii.max()) + cells.radii
+        near = float(self._cells.radii.max()) + cells.radii
+        open_cells = cKDTree(self._cells.points[~proven])
+        # Beyond the upper bound it is said to be infinite.
+        away = open_cells.query(cells.points, distance_upper_bound=float(near.max()) * (1.0 + 1e-9))[0]
+        is_known = away > near
         worst = float(self._most[proven].max(initial=0.0))
         return _Level(cells, counts, np.where(is_known, worst, np.nan))
 
