@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 _FINER = (4, 16, 64)  # times the cells of the samples, where these do not prove that the surface is covered
-_MOST_CELLS = 120_000  # that are looked at together
+_MOST_CELLS = 200_000  # that are looked at together
 
 
 def verify(task: Task, arm: Arm, joints: FloatArray | None = None, *, keep: bool = False) -> Verification:
