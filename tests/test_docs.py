@@ -48,13 +48,14 @@ def tasks_shown():
         pytest.param(text, id=f"{named(page)}-{number}")
         for page in PAGES
         for number, text in enumerate(blocks(page, "yaml"))
-        if text.startswith("synth: 1") and "targets:" in text
+        if text.startswith("synth: 1") and re.search("^(targets|path):", text, re.MULTILINE)
     ]
 
 
 @pytest.mark.parametrize("text", tasks_shown())
 def test_a_task_on_a_page_can_be_read(text, tmp_path):
     (tmp_path / "scan.csv").write_text("x,y,z\n" + "".join(f"{400 + i},0,300\n" for i in range(9)))
+    (tmp_path / "seam.csv").write_text("400,0,300\n420,90,300\n380,90,320\n")
     assert synth.parse_task(text, directory=tmp_path).targets
 
 
