@@ -122,6 +122,15 @@ def test_a_jump_of_joint_1_is_no_way_however_near_the_points_are():
     assert np.linalg.norm(told.breaks[:, :2] - opposite, axis=1).max() < 0.1 * radius
 
 
+@pytest.mark.parametrize("closed", [False, True])
+def test_a_path_out_of_reach_is_not_followed_and_nothing_breaks(closed):
+    arm, radius, height, _ = round_arm()
+    path = Path("far", circle(4.0 * radius, height, 8), closed=closed)
+    told = followed(path_task("t", ALL_ROUND, path), arm, path, Watch())
+    assert not told.met
+    assert "it is not reached all along" in told.sentence
+
+
 def test_what_stands_between_two_samples_of_a_path_is_seen():
     arm, radius, height, zero = round_arm()
     path = Path("p", circle(radius, height, 40, start=zero, turn=math.pi))

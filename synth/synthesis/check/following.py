@@ -109,7 +109,7 @@ class _Track:
             for a, b in itertools.pairwise(sizes)
         ]
         interval = np.repeat(np.arange(len(pairs)), [len(each) for each in pairs])
-        if not len(interval):
+        if not len(interval) or not sizes[0]:
             return self._broken(0, self._postures[0])
         firsts, lasts = (
             np.concatenate([self._postures[i + k][each[:, k]] for i, each in enumerate(pairs)])
