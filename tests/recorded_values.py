@@ -94,6 +94,7 @@ def recorded_values(folder):
         _free_bases()
         _surfaces()
         _paths()
+        _rigid_links()
     return made
 
 
@@ -165,6 +166,14 @@ def _surfaces():
     task, arm = as_mesh(0, 4)
     between_samples(task, arm, task.surfaces[0], Watch(1.0))
     Rectangle([1.0, 0.5])
+
+
+def _rigid_links():
+    several = "{one_of: [{d35: 300, d45: 310}, {d35: 400, d45: 410}]}"
+    link = "{length: [550, 700], min_bend_radius: 110}"
+    robot = f"{{d12: 58, d34: 49, link: {link}, rigid_link: {several}, joint_limits_deg: {{}}}}"
+    start = "synth: 1\nlength_unit: mm\ntargets: [{position: [500, 0, 300]}]\n"
+    synth.parse_task(f"{start}robot: {robot}\n")
 
 
 def _paths():

@@ -36,7 +36,7 @@ def test_what_the_first_task_leaves_to_choose_can_be_taken_as_it_stands(tmp_path
 
 def test_every_key_of_a_task_but_the_rarest_is_in_the_first_one():
     keys = set(re.findall(r"^(?:# )?(\w+):", FIRST_TASK, flags=re.MULTILINE))
-    assert keys == set(synth.task.task_schema()["properties"]) - {"surface", "current"}
+    assert keys == set(synth.task.task_schema()["properties"]) - {"surface", "path", "current"}
 
 
 def test_what_is_there_already_is_left_as_it_was(tmp_path):

@@ -28,11 +28,12 @@ class TestSchema:
     def test_has_the_fields_of_the_format(self):
         schema = task_schema()
         fields = (
-            "synth name length_unit robot base floor topology objective targets surface obstacles current"
+            "synth name length_unit robot base floor topology objective "
+            "targets surface path obstacles current"
         )
         assert set(schema["properties"]) == set(fields.split())
         assert set(schema["required"]) == {"synth", "length_unit", "robot"}
-        assert schema["anyOf"] == [{"required": ["targets"]}, {"required": ["surface"]}]
+        assert schema["anyOf"] == [{"required": [key]} for key in ("targets", "surface", "path")]
         assert schema["additionalProperties"] is False
 
 

@@ -9,7 +9,7 @@ from sampled_shapes import noisy_task
 
 from synth.synthesis import Status, all_targets, solve
 from synth.synthesis.all_targets import verified_in_time
-from synth.synthesis.check.verification import verify
+from synth.synthesis.check import verify_targets
 from synth.synthesis.run import Run
 from synth.synthesis.shapes.shapes import Shapes
 from synth.synthesis.starts.refinement import refine
@@ -178,9 +178,9 @@ def seconds_each(monkeypatch):
 
     def slow(task, arm):
         clock.now += len(task.targets)
-        return verify(task, arm)
+        return verify_targets(task, arm)
 
-    monkeypatch.setattr(all_targets, "verify", slow)
+    monkeypatch.setattr(all_targets, "verify_targets", slow)
     return clock
 
 
