@@ -54,7 +54,7 @@ def schema(kind: str) -> None:
 @click.option("--mesh", is_flag=True, help="The workspace as STL, PLY and GLB.")
 @click.option("--dh", is_flag=True, help="dh.json: Denavit-Hartenberg parameters.")
 @click.option("--c", "c", is_flag=True, help="kinematics.c: forward kinematics and Jacobian.")
-@click.option("--trajectory", is_flag=True, help="Through the targets, as CSV and JSON.")
+@click.option("--trajectory", is_flag=True, help="Through the targets or along the path, as CSV and JSON.")
 @click.option(
     "--shape", metavar="K", type=click.IntRange(min=1), default=1,
     help="Export the K-th shape of the file.  [default: 1, the one it tells of first]",
