@@ -31,16 +31,28 @@ _FRAMES: dict[str, FloatArray] = {
 }
 
 
+def upright(readings: Readings) -> Readings:
+    """Return readings with z up, if the markers on axis 1 say that x or y is up; said among the warnings.
+
+    By a turn, never a reflection: x stays x where y is up. What is mirrored stays so, and is refused later.
+    """
+    found = _axis_1(readings)
+    if found is None:
+        return readings
+    for axis, words in (("x", "one with x up, not z"), ("y", "one with y up, not z")):
+        if found[1]["xyz".index(axis)] >= np.cos(_UPRIGHT):
+            said = f"P1 to P2 points along {axis} of the file: its frame was turned so that z is up"
+            turned = readings.positions @ _FRAMES[words].T
+            return Readings(readings.markers, turned, readings.joints, (*readings.warnings, said))
+    return readings
+
+
 def wrong_base(readings: Readings) -> str:
     """Return what is wrong with the frame by the markers on axis 1, or nothing."""
-    some = readings.at(Place.AXIS_1)
-    offsets = readings.offsets[some]
-    if len(some) < 2 or np.ptp(offsets) == 0.0:
+    found = _axis_1(readings)
+    if found is None:
         return ""
-    at = readings.positions[some]
-    slope = (offsets - offsets.mean()) @ (at - at.mean(axis=0)) / np.sum((offsets - offsets.mean()) ** 2)
-    p1 = at.mean(axis=0) - offsets.mean() * slope
-    up = slope / np.linalg.norm(slope)
+    p1, up = found
     if up[2] < np.cos(_UPRIGHT):
         along = "xyz"[int(np.argmax(np.abs(up)))]
         sign = "-" if up[np.argmax(np.abs(up))] < 0.0 else ""
@@ -52,6 +64,17 @@ def wrong_base(readings: Readings) -> str:
     if np.linalg.norm(p1) > _AT_ORIGIN:
         return f"this is not the base frame, whose origin is P1: P1 is at {_mm(p1)}"
     return ""
+
+
+def _axis_1(readings: Readings) -> tuple[FloatArray, FloatArray] | None:
+    """Return P1 and the direction to P2 as the markers on axis 1 show them; None for fewer than two."""
+    some = readings.at(Place.AXIS_1)
+    offsets = readings.offsets[some]
+    if len(some) < 2 or np.ptp(offsets) == 0.0:
+        return None
+    at = readings.positions[some]
+    slope = (offsets - offsets.mean()) @ (at - at.mean(axis=0)) / np.sum((offsets - offsets.mean()) ** 2)
+    return at.mean(axis=0) - offsets.mean() * slope, slope / np.linalg.norm(slope)
 
 
 def frame_that_fits(readings: Readings, fitted: Callable[[Readings], ArmFit]) -> str:

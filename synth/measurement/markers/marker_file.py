@@ -1,4 +1,4 @@
-"""Markers from a file: CSV with a header, or the same as JSON lines; checked as strictly as a task.
+"""Markers from a file: a capture, CSV with a header, or JSON lines; checked as strictly as a task.
 
     marker,x_mm,y_mm,z_mm,joint1_deg,joint2_deg,frame
     P3,-432.1,20.4,310.0,180,180,1
@@ -15,22 +15,29 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.errors import InputError, Mistake
-from synth.measurement.markers.marker_rows import UNITS, Row, csv_rows, is_gap, json_rows, number_of, text_of
-from synth.measurement.markers.markers import Marker, Readings, marker_named
+from synth.measurement.captures import (
+    FARTHEST,
+    MISTAKES_AT_MOST,
+    capture_in,
+    is_capture,
+    is_gap,
+    number_of,
+    text_of,
+)
+from synth.measurement.markers.capture_markers import capture_readings
+from synth.measurement.markers.marker_rows import UNITS, Row, csv_rows, json_rows
+from synth.measurement.markers.markers import MARKER_NAMES, marker_named
+from synth.measurement.markers.resting import RestingMarkers
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Iterator
 
     from synth.arrays import FloatArray
+    from synth.measurement.markers.markers import Readings
     from synth.robot import Robot
 
-_MISTAKES_AT_MOST = 10
-_FARTHEST = 100.0  # m; a coordinate beyond this is no measurement of this robot
-_NAMES = "there are P1 to P5, A1:150 and A2:-50.5 on the axes, E:-60 at the link's end, L050 on the link (mm)"
-_SAME_POSTURE = math.radians(0.5)
 _STRAIGHT = math.pi  # joint 2 where nothing is said of it
-_SPREAD = 2e-3  # m; a marker that moves by more while it is measured was not at rest
 
 
 def load_readings(path: str | os.PathLike[str], robot: Robot, joint1: float) -> Readings:
@@ -49,6 +56,8 @@ def load_readings(path: str | os.PathLike[str], robot: Robot, joint1: float) -> 
     """
     file = str(path)
     text = text_of(Path(path), file)
+    if capture := capture_in(text, file):
+        return capture_readings(capture, robot, (joint1, _STRAIGHT), file)
     is_json = text.lstrip()[:1] == "{"
     rows = json_rows(text, file) if is_json else csv_rows(text, file)
     return _readings(rows, robot, joint1, file)
@@ -70,6 +79,9 @@ def load_points(path: str | os.PathLike[str]) -> tuple[FloatArray, FloatArray | 
     """
     file = str(path)
     text = text_of(Path(path), file)
+    if is_capture(text):
+        what = "is a capture of markers: points of the end effector are read from x_mm,y_mm,z_mm only"
+        raise InputError([Mistake(what, file)])
     is_json = text.lstrip()[:1] == "{"
     rows = (json_rows if is_json else csv_rows)(text, file, named=False)
     mistakes: list[Mistake] = []
@@ -79,7 +91,7 @@ def load_points(path: str | os.PathLike[str]) -> tuple[FloatArray, FloatArray | 
     if any(angled) and not all(angled):
         mistakes.append(Mistake("must have both joint angles in every row, or none", file))
     if mistakes:
-        raise InputError(mistakes[:_MISTAKES_AT_MOST])
+        raise InputError(mistakes[:MISTAKES_AT_MOST])
     if not seen:
         raise InputError([Mistake("holds no points", file)])
     array = np.array(seen, dtype=np.float64)
@@ -89,42 +101,24 @@ def load_points(path: str | os.PathLike[str]) -> tuple[FloatArray, FloatArray | 
 def _readings(rows: list[Row], robot: Robot, joint1: float, file: str) -> Readings:
     """Return the means of the frames."""
     mistakes: list[Mistake] = []
-    seen: dict[tuple[str, int, int], list[list[float]]] = {}
-    markers: dict[str, Marker] = {}
+    resting, named = RestingMarkers(), set()
     for number, row in rows:
         marker = marker_named(str(row["marker"]), robot)
         if marker is None:
-            shown = repr(str(row["marker"])[:20])
-            mistakes.append(Mistake(f"there is no marker {shown}; {_NAMES}", file, number, "marker"))
+            name = repr(str(row["marker"])[:20])
+            mistakes.append(Mistake(f"there is no marker {name}; {MARKER_NAMES}", file, number, "marker"))
             continue
+        named.add(marker.name)
         values = [*_numbers(row, number, file, mistakes)]
         if values[0] is None:  # a gap
             continue
         first = joint1 if values[3] is None else math.radians(values[3])
         second = _STRAIGHT if values[4] is None else math.radians(values[4])
-        markers[marker.name] = marker
-        key = (marker.name, round(first / _SAME_POSTURE), round(second / _SAME_POSTURE))
-        seen.setdefault(key, []).append([*(float(v or 0.0) for v in values[:3]), first, second])
+        resting.add(marker, [[float(v or 0.0) for v in values[:3]]], (first, second))
     if mistakes:
-        more = [Mistake("has more such lines", file)] if len(mistakes) > _MISTAKES_AT_MOST else []
-        raise InputError([*mistakes[:_MISTAKES_AT_MOST], *more])
-    if not seen:
-        raise InputError([Mistake("holds no marker that was seen", file)])
-    named = {m.name for _, row in rows if (m := marker_named(str(row["marker"]), robot))}
-    warnings = [f"{name} was never seen" for name in sorted(named - set(markers))]
-    kept, means = [], []
-    for (name, *_), frames in seen.items():
-        array = np.array(frames)
-        spread = float(np.sqrt(np.sum(array[:, :3].var(axis=0))))
-        if spread > _SPREAD:
-            warnings.append(f"{name} is left out: it moved by {1e3 * spread:.1f} mm while it was measured")
-            continue
-        kept.append(markers[name])
-        means.append(array.mean(axis=0))
-    if not kept:
-        raise InputError([Mistake("; ".join(warnings), file)])
-    table = np.array(means)
-    return Readings(tuple(kept), table[:, :3], table[:, 3:], tuple(warnings))
+        more = [Mistake("has more such lines", file)] if len(mistakes) > MISTAKES_AT_MOST else []
+        raise InputError([*mistakes[:MISTAKES_AT_MOST], *more])
+    return resting.readings(named, file)
 
 
 def _numbers(
@@ -139,11 +133,11 @@ def _numbers(
             yield None
             continue
         value = number_of(cell)
-        if value is None or abs(value) / UNITS[unit] > _FARTHEST:
+        if value is None or abs(value) / UNITS[unit] > FARTHEST:
             what = (
                 "must be a number"
                 if value is None
-                else f"is farther than {_FARTHEST:.0f} m: which unit is it in?"
+                else f"is farther than {FARTHEST:.0f} m: which unit is it in?"
             )
             mistakes.append(
                 Mistake(

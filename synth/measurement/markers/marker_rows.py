@@ -5,18 +5,10 @@ from __future__ import annotations
 import csv
 import difflib
 import json
-import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from synth.errors import InputError, Mistake
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-_MISTAKES_AT_MOST = 10
-
-_MAX_BYTES = 50_000_000
-
+from synth.measurement.captures import MISTAKES_AT_MOST
 
 UNITS = {"mm": 1000.0, "m": 1.0}  # to divide by
 _COLUMNS = {
@@ -44,28 +36,6 @@ def row_schema() -> dict[str, Any]:
         "oneOf": [{"required": [f"{axis}_{unit}" for axis in "xyz"]} for unit in UNITS],
         "additionalProperties": False,
     }
-
-
-def text_of(path: Path, file: str) -> str:
-    """Return the text of a file, or refuse what is none."""
-    try:
-        with path.open("rb") as stream:
-            content = stream.read(_MAX_BYTES + 1)
-    except FileNotFoundError:
-        raise InputError([Mistake("there is no such file", file)]) from None
-    except (OSError, ValueError) as error:
-        raise InputError(
-            [Mistake(f"cannot be read: {getattr(error, 'strerror', None) or error}", file)]
-        ) from None
-    if len(content) > _MAX_BYTES:
-        raise InputError([Mistake(f"is larger than {_MAX_BYTES // 1_000_000} MB", file)])
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise InputError([Mistake("is not a text file in UTF-8", file)]) from None
-    if "\0" in text:
-        raise InputError([Mistake("is not a text file: it holds the character NUL", file)])
-    return text
 
 
 def json_rows(text: str, file: str, *, named: bool = True) -> list[Row]:
@@ -119,7 +89,7 @@ def csv_rows(text: str, file: str, *, named: bool = True) -> list[Row]:
         if len(cells) != len(header)
     ]
     if mistakes:
-        raise InputError(mistakes[:_MISTAKES_AT_MOST])
+        raise InputError(mistakes[:MISTAKES_AT_MOST])
     return [(number, dict(zip(header, cells, strict=True))) for number, cells in table[1:]]
 
 
@@ -143,23 +113,3 @@ def _check_columns(names: list[str], file: str, line: int, *, named: bool) -> No
         mistakes.append(Mistake("must name the marker", file, line, "marker"))
     if mistakes:
         raise InputError(mistakes)
-
-
-def is_gap(cell: object) -> bool:
-    """Whether a cell holds nothing: a frame in which the marker was not seen."""
-    return (
-        cell is None
-        or (isinstance(cell, str) and cell.strip().lower() in {"", "nan", "null"})
-        or (isinstance(cell, float) and math.isnan(cell))
-    )
-
-
-def number_of(cell: object) -> float | None:
-    """Return the number in a cell, or None if it holds none that is finite."""
-    if isinstance(cell, bool) or not isinstance(cell, str | int | float):
-        return None
-    try:
-        value = float(cell)
-    except (ValueError, OverflowError):
-        return None
-    return value if math.isfinite(value) else None

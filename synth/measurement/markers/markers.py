@@ -20,6 +20,9 @@ MARKER_ERROR = 0.455e-3  # m, mean 3D error of a marker that a camera system see
 # The length of a vector whose three components are normal with standard deviation 1 is sqrt(8 / pi) in the
 # mean.
 _MEAN_LENGTH = float(np.sqrt(8.0 / np.pi))
+MARKER_NAMES = (
+    "there are P1 to P5, A1:150 and A2:-50.5 on the axes, E:-60 at the link's end, L050 on the link (mm)"
+)
 _NUMBER = r"[+-]?\d+(?:\.\d*)?"
 _OFFSET = re.compile(rf"(A1|A2|E):({_NUMBER})")
 _ON_LINK = re.compile(r"L(\d+(?:\.\d*)?)")
