@@ -56,6 +56,9 @@ LAYOUTS = {
     "trc, a count that lies": trc_text(NAMES, POSITIONS, frames=7),
     "trc, a count that lies more": trc_text(NAMES, POSITIONS, frames=100_000),
     "trc, leading blanks": "\r\n \t\r\n" + trc_text(NAMES, POSITIONS),
+    "trc, axes one column beside": trc_text(NAMES, POSITIONS).replace("\t\tX1", "\t\t\tX1"),
+    "trc, axes from the first column": trc_text(NAMES, POSITIONS, aside=True).replace("\t\tX1", "X1"),
+    "trc, commas": trc_text(NAMES, POSITIONS).replace("\t", ","),
     "qtm": qtm_text(NAMES, POSITIONS),
     "qtm, coordinates only": qtm_text(NAMES, POSITIONS, columns=0, header=False),
     "qtm, no names of columns": qtm_text(NAMES, POSITIONS, header=False),
@@ -198,3 +201,10 @@ def test_points_of_the_end_effector_are_no_capture(tmp_path):
     path.write_text(trc_text(NAMES, POSITIONS))
     with pytest.raises(InputError, match="is a capture of markers"):
         load_points(path)
+
+
+def test_a_column_without_a_name_is_no_marker(tmp_path):
+    names = ["", *NAMES[1:]]
+    readings = read(tmp_path, trc_text(names, POSITIONS))
+    assert readings.names == tuple(NAMES[1:])
+    assert readings.positions == pytest.approx(POSITIONS.mean(axis=0)[1:], abs=1e-6)

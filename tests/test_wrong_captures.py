@@ -49,7 +49,10 @@ WRONG = {
     "TRC without settings": (without(TRC, "DataRate"), "the unit of length is not said"),
     "TRC without names": (without(TRC, "Frame#"), "has no rows Frame# and X1 Y1 Z1"),
     "TRC without axes": (without(TRC, "\t\tX1"), "must have the row X1 Y1 Z1"),
-    "TRC with axes beside": (TRC.replace("\t\tX1", "\tX1"), "must have X1 in column 3, below"),
+    "TRC with a column more": (
+        TRC.replace("0.000000\t", "0.000000\t1\t"),
+        "has 27 columns, and X Y Z are said of 26",
+    ),
     "TRC with a name more": (TRC.replace("\tP2\t", "\tP2\tP9"), "has 9 names for 8 times X Y Z"),
     "TRC with a word": (
         TRC.replace("0.008333\t", "0.008333\tabc"),
