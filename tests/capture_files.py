@@ -1,6 +1,10 @@
 """Captures as tracking systems write them, of arms that stand somewhere."""
 
+import io
+import warnings
+
 import numpy as np
+import pytest
 from standing import seen, standing
 
 NAMES = "P1 P2 A1:300 P3 P4 P5 A2:-150 A2:150"
@@ -83,3 +87,21 @@ def qtm_text(names, positions, lost="0.000", unit=1000.0, columns=2, header=True
     words = ["Frame", "Time", *(f"{name} {axis}" for name in names for axis in "XYZ")]
     table = [*([words] if header else []), *_rows(positions, unit, lost)]
     return end.join("\t".join(line) + tab for line in [*lines, *(row[2 - columns :] for row in table)]) + end
+
+
+def c3d_bytes(names, positions, unit=("mm", 1000.0)):
+    """Return a C3D file in floating point, as the package c3d writes it."""
+    c3d = pytest.importorskip("c3d")
+    writer = c3d.Writer(point_rate=100.0, point_units=unit[0])
+    writer.set_point_labels(names)
+    for points in positions:
+        lost = np.isnan(points).any(axis=1)
+        values = np.column_stack(
+            [unit[1] * np.nan_to_num(points), np.where(lost, -1.0, 0.0), np.zeros(len(lost))]
+        )
+        writer.add_frames([(values, np.empty((0, 1)))])
+    stream = io.BytesIO()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # that there is nothing analog
+        writer.write(stream)
+    return stream.getvalue()

@@ -79,6 +79,7 @@ ROOMS = {
     "geometry": set(),
 }
 LIBRARIES = {
+    "c3d": {"measurement/captures/c3d_file.py"},
     "casadi": {
         "export/planners/symbolic.py",
         "synthesis/nlp/arm.py",

@@ -2,18 +2,6 @@
 
 from synth.measurement.captures.capture import FARTHEST, MISTAKES_AT_MOST, Capture, Track, shown
 from synth.measurement.captures.cells import is_gap, number_of
-from synth.measurement.captures.formats import capture_in, is_capture
-from synth.measurement.captures.text import text_of
+from synth.measurement.captures.content import content_of
 
-__all__ = [
-    "FARTHEST",
-    "MISTAKES_AT_MOST",
-    "Capture",
-    "Track",
-    "capture_in",
-    "is_capture",
-    "is_gap",
-    "number_of",
-    "shown",
-    "text_of",
-]
+__all__ = ["FARTHEST", "MISTAKES_AT_MOST", "Capture", "Track", "content_of", "is_gap", "number_of", "shown"]

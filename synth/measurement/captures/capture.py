@@ -12,6 +12,8 @@ from synth.errors import InputError, Mistake
 from synth.measurement.captures.cells import is_gap, number_of
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from synth.arrays import FloatArray
 
 MISTAKES_AT_MOST = 10
@@ -49,14 +51,14 @@ class Capture:
 
     Attributes:
         tracks: The markers that were measured; a name may come twice, where a marker was lost and found.
-        rows: Frames: the line in the file, from 1, and the cells.
+        rows: Frames: the line in the file, or the number of the frame, from 1, and the cells.
         metre: How many units of the file are a metre.
         zeros_are_gaps: Whether a marker at (0, 0, 0) was not seen.
         solved: Names of which the file has only positions that follow from a rigid body.
     """
 
     tracks: tuple[Track, ...]
-    rows: tuple[tuple[int, list[str]], ...]
+    rows: Sequence[tuple[int, Sequence[str | float]]]
     metre: float
     zeros_are_gaps: bool = False
     solved: tuple[str, ...] = ()
@@ -76,7 +78,7 @@ class Capture:
             if len(mistakes) > MISTAKES_AT_MOST:
                 break
             what = (
-                f"must be a number, but is {point[bad][:30]!r}"
+                f"must be a number, but is {str(point[bad])[:30]!r}"
                 if values[bad] is None
                 else f"is farther than {FARTHEST:.0f} m: which unit is it in?"
             )
@@ -86,7 +88,7 @@ class Capture:
         return points[somewhere] if self.zeros_are_gaps or somewhere.any() else points
 
 
-def metre_in(word: str, file: str, line: int) -> float:
+def metre_in(word: str, file: str, line: int | None) -> float:
     """Return how many of a unit are a metre, or refuse a unit that is not known."""
     unit = word.strip().strip("()[]").lower()
     for name in (unit, unit.removesuffix("s")):

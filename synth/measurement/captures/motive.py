@@ -62,7 +62,7 @@ def motive_capture(text: str, file: str) -> Capture:
     names = {track.name for track in measured}
     return Capture(
         tuple(measured),
-        tuple(rows[at + 1 :]),
+        rows[at + 1 :],
         metre,
         solved=tuple(dict.fromkeys(track.name for track in solved if track.name not in names)),
     )

@@ -48,7 +48,7 @@ def qtm_capture(text: str, file: str) -> Capture:
     frames = rows[max(k for k, _ in settings.values()) + 1 :]
     before, header = _before(frames, 3 * len(names), file, rows[at][0])
     tracks = tuple(Track(name, before + 3 * k) for k, name in enumerate(names))
-    return Capture(tracks, tuple(frames[header:]), _MILLIMETRES, zeros_are_gaps=True)
+    return Capture(tracks, frames[header:], _MILLIMETRES, zeros_are_gaps=True)
 
 
 def _is_setting(word: str) -> bool:

@@ -44,7 +44,7 @@ def trc_capture(text: str, file: str) -> Capture:
     if at is None or at + 1 >= len(rows):
         _refuse("has no rows Frame# and X1 Y1 Z1 that say which marker is in which column", file, rows[-1][0])
     tracks = _tracks(rows[at], rows[at + 1], rows[at + 2 :], file)
-    return Capture(tracks, tuple(rows[at + 2 :]), _metre(rows[:at], file))
+    return Capture(tracks, rows[at + 2 :], _metre(rows[:at], file))
 
 
 def _metre(header: Sequence[_Row], file: str) -> float:

@@ -15,15 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.errors import InputError, Mistake
-from synth.measurement.captures import (
-    FARTHEST,
-    MISTAKES_AT_MOST,
-    capture_in,
-    is_capture,
-    is_gap,
-    number_of,
-    text_of,
-)
+from synth.measurement.captures import FARTHEST, MISTAKES_AT_MOST, Capture, content_of, is_gap, number_of
 from synth.measurement.markers.capture_markers import capture_readings
 from synth.measurement.markers.marker_rows import UNITS, Row, csv_rows, json_rows
 from synth.measurement.markers.markers import MARKER_NAMES, marker_named
@@ -55,9 +47,9 @@ def load_readings(path: str | os.PathLike[str], robot: Robot, joint1: float) -> 
         InputError: The file cannot be read or is wrong; with its mistakes, up to ten.
     """
     file = str(path)
-    text = text_of(Path(path), file)
-    if capture := capture_in(text, file):
-        return capture_readings(capture, robot, (joint1, _STRAIGHT), file)
+    text = content_of(Path(path), file)
+    if isinstance(text, Capture):
+        return capture_readings(text, robot, (joint1, _STRAIGHT), file)
     is_json = text.lstrip()[:1] == "{"
     rows = json_rows(text, file) if is_json else csv_rows(text, file)
     return _readings(rows, robot, joint1, file)
@@ -78,8 +70,8 @@ def load_points(path: str | os.PathLike[str]) -> tuple[FloatArray, FloatArray | 
         InputError: The file cannot be read or is wrong; with its mistakes, up to ten.
     """
     file = str(path)
-    text = text_of(Path(path), file)
-    if is_capture(text):
+    text = content_of(Path(path), file)
+    if isinstance(text, Capture):
         what = "is a capture of markers: points of the end effector are read from x_mm,y_mm,z_mm only"
         raise InputError([Mistake(what, file)])
     is_json = text.lstrip()[:1] == "{"

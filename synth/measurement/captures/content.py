@@ -1,4 +1,4 @@
-"""The text of a file of markers, in the encodings that tracking software writes."""
+"""What is in a file of markers: a capture, or text, in the encodings that tracking software writes."""
 
 from __future__ import annotations
 
@@ -6,22 +6,44 @@ import codecs
 from typing import TYPE_CHECKING
 
 from synth.errors import InputError, Mistake
-from synth.measurement.captures.formats import is_capture
+from synth.measurement.captures.c3d_file import begins_as_c3d, c3d_capture
+from synth.measurement.captures.formats import capture_in, is_capture
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from synth.measurement.captures.capture import Capture
 
 _MAX_BYTES = 50_000_000
 _UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
-def text_of(path: Path, file: str) -> str:
-    """Return the text of a file, or refuse what is none.
+def content_of(path: Path, file: str) -> Capture | str:
+    """Read a file of markers.
 
-    UTF-8 and, with a byte-order mark, UTF-16. Captures, whose unknown names may be in any language, are also
-    read as Latin-1: names of markers of this arm and numbers are the same there.
+    Args:
+        path: The file.
+        file: Its name, for the mistakes.
+
+    Returns:
+        The capture in it, or its text if it begins as none does.
+
+    Raises:
+        InputError: It cannot be read, is no text, or a capture that cannot be read.
     """
     content = _bytes_of(path, file)
+    if begins_as_c3d(content):
+        return c3d_capture(content, file)
+    text = _text_of(content, file)
+    return capture_in(text, file) or text
+
+
+def _text_of(content: bytes, file: str) -> str:
+    """Return the text of a file, or refuse what is none.
+
+    UTF-8 and, with a byte-order mark, UTF-16. Captures, whose other names may be in any language, are also
+    read as Latin-1: names of markers of this arm and numbers are the same there.
+    """
     try:
         text = content.decode("utf-16" if content.startswith(_UTF_16) else "utf-8-sig")
     except UnicodeDecodeError:
