@@ -2,6 +2,7 @@
 
 import io
 import warnings
+from itertools import chain
 
 import numpy as np
 import pytest
@@ -54,6 +55,21 @@ def motive_text(names, positions, unit=("Meters", 1.0), version="1.23", kind="Ma
     ]
     frames = ([*row[:2], *["0.5"] * 8, *row[2:]] for row in _rows(positions, unit[1]))
     return "\n".join(map(",".join, [*lines, *frames])) + "\n"
+
+
+def motive_frames_text(names, positions, unit=1.0, hand="righthanded", lost=None):
+    """Return an export of Motive in version 1.1: a line a frame; `lost` is what stands for lost positions."""
+    lines = ['comment,"at rest"', hand, "info,version,1.1", "info,framecount,99999", "info,rigidbodycount,1",
+             'rigidbody,"Arm",1,3,0.1,0.2,0.3']  # fmt: skip
+    for number, points in enumerate(positions):
+        there = [k for k, point in enumerate(points) if lost is not None or not np.isnan(point).any()]
+        cells = [[*_cells(points[k], unit, lost), str(k), f'"Arm:{names[k]}"'] for k in there]
+        body = ["1", *["0.5"] * 10, str(len(there))]
+        lines.append(
+            ",".join(["frame", str(number), f"{number / 120:.6f}", "1", *body, *chain.from_iterable(cells)])
+        )
+        lines.append(f"rigidbody,{number},0.0,Arm,1,0,3,0.1,0.2,0.3")
+    return "\n".join(lines) + "\n"
 
 
 def trc_text(names, positions, unit=("mm", 1000.0), frames=None, pad=0, end="\n", aside=False):

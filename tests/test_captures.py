@@ -4,7 +4,7 @@ import codecs
 
 import numpy as np
 import pytest
-from capture_files import motive_text, qtm_text, recorded, trc_text
+from capture_files import motive_frames_text, motive_text, qtm_text, recorded, trc_text
 from planted import ROBOT
 from standing import HOLD, SIGMA
 
@@ -17,7 +17,7 @@ MILLIMETRES, CENTIMETRES = ("Millimeters", 1000.0), ("Centimeters", 100.0)
 Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # to a frame with y up
 X_UP = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 GAPS = POSITIONS.copy()
-GAPS[::3, 2] = np.nan
+GAPS[1::3, 2] = np.nan
 GAPS[5:, -1] = np.nan
 LOST = POSITIONS.copy()
 LOST[:, -1] = np.nan
@@ -48,6 +48,7 @@ LAYOUTS = {
     "motive 1.25, centimetres": motive_text(NAMES, POSITIONS, CENTIMETRES, version="1.25"),
     "motive, no set": motive_text(NAMES, POSITIONS, prefix=""),
     "motive, CR LF": motive_text(NAMES, POSITIONS).replace("\n", "\r\n"),
+    "motive 1.1": motive_frames_text(NAMES, POSITIONS),
     "trc, mm": trc_text(NAMES, POSITIONS),
     "trc, m": trc_text(NAMES, POSITIONS, ("m", 1.0)),
     "trc, CR CR LF": trc_text(NAMES, POSITIONS, end="\r\r\n"),
@@ -91,6 +92,7 @@ def test_encodings(tmp_path, text, encode):
 
 @pytest.mark.parametrize("text", [
     motive_text(NAMES, GAPS), trc_text(NAMES, GAPS), qtm_text(NAMES, GAPS), qtm_text(NAMES, GAPS, lost=""),
+    motive_frames_text(NAMES, GAPS), motive_frames_text(NAMES, GAPS, lost="-1.#IND"),
     qtm_text(NAMES, GAPS, header=False), trc_text(NAMES, np.nan_to_num(GAPS)),
 ])  # fmt: skip
 def test_gaps_are_no_positions(tmp_path, text):
@@ -115,6 +117,7 @@ def test_a_marker_that_was_never_seen_is_named(tmp_path, text):
         (motive_text(NAMES, STILL, ("Centimeters", 1000.0)), "10 times too large"),
         (trc_text(NAMES, STILL, ("mm", 1.0)), "1000 times too small"),
         (trc_text(NAMES, STILL, ("m", 100.0)), "distances between the markers are 100 times"),
+        (motive_frames_text(NAMES, STILL, unit=10.0), "10 times too large"),
         (qtm_text(NAMES, STILL, unit=1.0), "1000 times too small"),
     ],
 )
@@ -132,6 +135,7 @@ def test_noise_that_a_wrong_unit_makes_large_is_asked_about(tmp_path):
 
 @pytest.mark.parametrize("text", [
     motive_text(NAMES, POSITIONS, ("Meters", 1000.0)), trc_text(NAMES, POSITIONS, ("m", 1000.0)),
+    motive_frames_text(NAMES, POSITIONS, unit=1000.0),
 ])  # fmt: skip
 def test_metres_that_are_millimetres_are_too_far(tmp_path, text):
     assert "is farther than 100 m: which unit is it in?" in refusal(tmp_path, text)
@@ -190,8 +194,9 @@ def test_other_markers_are_passed_over_and_named(tmp_path):
 def test_a_marker_lost_and_found_is_one_and_two_sets_are_two(tmp_path):
     halves = np.concatenate([POSITIONS, POSITIONS[:, -1:]], axis=1)
     halves[:9, -1] = halves[9:, -2] = np.nan
-    readings = read(tmp_path, motive_text([*NAMES, NAMES[-1]], halves))
-    assert readings.positions == pytest.approx(POSITIONS.mean(axis=0), abs=1e-6)
+    for write in (motive_text, motive_frames_text):
+        readings = read(tmp_path, write([*NAMES, NAMES[-1]], halves))
+        assert readings.positions == pytest.approx(POSITIONS.mean(axis=0), abs=1e-6)
     text = motive_text(["Arm:P1", "Leg:P1"], POSITIONS[:, :2], prefix="")
     assert "P1 is there as 'Arm:P1' and as 'Leg:P1': which is it?" in refusal(tmp_path, text)
 

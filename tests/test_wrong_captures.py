@@ -3,7 +3,7 @@
 import random
 
 import pytest
-from capture_files import motive_text, qtm_text, recorded, trc_text
+from capture_files import motive_frames_text, motive_text, qtm_text, recorded, trc_text
 from mutations import mutated
 from planted import ROBOT
 from standing import HOLD, SIGMA
@@ -15,6 +15,7 @@ from synth.measurement.markers.marker_file import load_readings
 WANTED, _, NAMES, POSITIONS = recorded()
 SHORT = POSITIONS[:3]
 MOTIVE, TRC, QTM = motive_text(NAMES, SHORT), trc_text(NAMES, SHORT), qtm_text(NAMES, SHORT)
+FRAMES = motive_frames_text(NAMES, SHORT)
 MUTATIONS = 300
 
 
@@ -44,6 +45,13 @@ WRONG = {
         motive_text([], SHORT[:, :0]),
         "has no positions of markers, only rigid body: export the markers too",
     ),
+    "1.1, left-handed": (
+        FRAMES.replace("righthanded", "lefthanded"),
+        "is left-handed, so all in it is mirrored",
+    ),
+    "1.1 with a marker less": (FRAMES.replace(",8,", ",7,"), "has 56 cells where 51 are said"),
+    "1.1 with a marker more": (FRAMES.replace(",8,", ",9,"), "has 56 cells where 61 are said"),
+    "1.1 without counts": (FRAMES.replace(",8,", ",,"), "does not say how many rigid bodies and markers"),
     "TRC without a unit": (trc_text(NAMES, SHORT, ("", 1.0)), "the unit of length is '100.00'"),
     "TRC with another": (trc_text(NAMES, SHORT, ("in", 1.0)), "the unit of length is 'in'"),
     "TRC without settings": (without(TRC, "DataRate"), "the unit of length is not said"),
@@ -81,7 +89,7 @@ def test_ten_mistakes_of_many_are_told(tmp_path):
     assert str(caught.value.mistakes[-1]).endswith("has more such lines")
 
 
-@pytest.mark.parametrize("text", [MOTIVE, TRC, QTM], ids=["motive", "trc", "qtm"])
+@pytest.mark.parametrize("text", [MOTIVE, FRAMES, TRC, QTM], ids=["motive", "1.1", "trc", "qtm"])
 def test_mutated_files_are_read_or_refused(tmp_path, text):
     chance = random.Random(0)  # noqa: S311
     read_at_all = 0

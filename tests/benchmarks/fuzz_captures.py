@@ -19,7 +19,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from capture_files import c3d_bytes, motive_text, qtm_text, recorded, trc_text
+from capture_files import c3d_bytes, motive_frames_text, motive_text, qtm_text, recorded, trc_text
 from mutations import mutated
 from planted import ROBOT
 from standing import HOLD, SIGMA
@@ -54,7 +54,8 @@ def main(files: int, seed: int) -> int:
     wanted, true, names, positions = recorded(seed)
     positions = positions[:_FRAMES]
     formats = {
-        "motive": motive_text(names, positions).encode(),
+        "motive 1.1": motive_frames_text(names, positions).encode(),
+        "motive 1.23": motive_text(names, positions).encode(),
         "motive 1.25": motive_text(names, positions, ("Millimeters", 1000.0), version="1.25").encode(),
         "trc": trc_text(names, positions).encode(),
         "qtm": qtm_text(names, positions).encode(),

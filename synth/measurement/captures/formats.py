@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from synth.measurement.captures.motive import begins_as_motive, motive_capture
+from synth.measurement.captures.motive_frames import begins_as_motive_frames, motive_frames_capture
 from synth.measurement.captures.qtm import begins_as_qtm, qtm_capture
 from synth.measurement.captures.trc import begins_as_trc, trc_capture
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 
 _READERS: tuple[tuple[Callable[[str], bool], Callable[[str, str], Capture]], ...] = (
     (begins_as_motive, motive_capture),
+    (begins_as_motive_frames, motive_frames_capture),
     (begins_as_trc, trc_capture),
     (begins_as_qtm, qtm_capture),
 )
