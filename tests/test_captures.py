@@ -165,6 +165,11 @@ def test_other_frames_are_refused(tmp_path, turn, told):
     assert told in examined(tmp_path, trc_text(NAMES, POSITIONS @ turn.T)).refusal
 
 
+def test_markers_in_one_place_show_no_axis(tmp_path):
+    told = examined(tmp_path, trc_text(NAMES, np.zeros_like(POSITIONS))).refusal
+    assert "distances between the markers are 0 times what the hardware has" in told
+
+
 def test_measured_positions_are_preferred_to_solved_ones(tmp_path):
     both = motive_text(NAMES * 2, np.concatenate([POSITIONS + 0.01, POSITIONS], axis=1))
     three = 3 * len(NAMES)

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from capture_files import motive_text
 from command import invoked
 from planted import ROBOT, planted_task
 from solutions import solution_document, write_markers, write_solution
@@ -44,6 +45,18 @@ def test_a_link_in_its_place_is_locked(scene):
     result = invoked("check", markers(scene, wanted(scene)), scene[3], "--base-calibrated")
     assert result.exit_code == 0, result.output
     assert "lock it" in result.output
+
+
+def test_a_recording_with_y_up_is_checked_like_a_table(scene, tmp_path):
+    readings = seen(wanted(scene), BARS, np.random.default_rng(0))
+    y_up = readings.positions @ np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+    path = tmp_path / "at rest.csv"
+    path.write_text(motive_text([*readings.names, "Unlabeled 7"], [[*y_up, y_up[0]]]))
+    result = invoked("check", path, scene[3], "--base-calibrated")
+    assert result.exit_code == 0, result.output
+    assert "lock it" in result.output
+    assert "passed over, being no markers of this arm: 'Arm:Unlabeled 7'" in result.output
+    assert "P1 to P2 points along y of the file: its frame was turned so that z is up" in result.output
 
 
 def test_the_json_of_a_check_is_the_contract(scene, tmp_path):

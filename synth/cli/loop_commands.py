@@ -57,8 +57,8 @@ def check(
 ) -> None:
     """Say what to do with the link as it stands: lock it, correct it, or leave it at that.
 
-    MEASURED holds markers in the base frame, marker,x_mm,y_mm,z_mm; SOLUTION is the solution.json of the
-    task.
+    MEASURED holds markers in the base frame, marker,x_mm,y_mm,z_mm, or is a recording of the arm at rest:
+    Motive CSV, TRC, QTM TSV or C3D. SOLUTION is the solution.json of the task.
 
     \b
     Exit codes:

@@ -67,14 +67,15 @@ def wrong_base(readings: Readings) -> str:
 
 
 def _axis_1(readings: Readings) -> tuple[FloatArray, FloatArray] | None:
-    """Return P1 and the direction to P2 as the markers on axis 1 show them; None for fewer than two."""
+    """Return P1 and the direction to P2 as the markers on axis 1 show them; None where they show none."""
     some = readings.at(Place.AXIS_1)
     offsets = readings.offsets[some]
     if len(some) < 2 or np.ptp(offsets) == 0.0:
         return None
     at = readings.positions[some]
     slope = (offsets - offsets.mean()) @ (at - at.mean(axis=0)) / np.sum((offsets - offsets.mean()) ** 2)
-    return at.mean(axis=0) - offsets.mean() * slope, slope / np.linalg.norm(slope)
+    length = np.linalg.norm(slope)
+    return (at.mean(axis=0) - offsets.mean() * slope, slope / length) if length > 0.0 else None
 
 
 def frame_that_fits(readings: Readings, fitted: Callable[[Readings], ArmFit]) -> str:
