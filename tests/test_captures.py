@@ -92,6 +92,7 @@ def test_encodings(tmp_path, text, encode):
 
 @pytest.mark.parametrize("text", [
     motive_text(NAMES, GAPS), trc_text(NAMES, GAPS), qtm_text(NAMES, GAPS), qtm_text(NAMES, GAPS, lost=""),
+    qtm_text(NAMES, GAPS, lost="NaN"), motive_frames_text(NAMES, GAPS, lost="nan"),
     motive_frames_text(NAMES, GAPS), motive_frames_text(NAMES, GAPS, lost="-1.#IND"),
     qtm_text(NAMES, GAPS, header=False), trc_text(NAMES, np.nan_to_num(GAPS)),
 ])  # fmt: skip

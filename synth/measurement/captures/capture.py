@@ -12,7 +12,7 @@ from synth.errors import InputError, Mistake
 from synth.measurement.captures.cells import is_gap, number_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from synth.arrays import FloatArray
 
@@ -66,26 +66,36 @@ class Capture:
     def seen(self, track: Track, file: str, mistakes: list[Mistake]) -> FloatArray:
         """Return where a marker was seen, shape (n, 3), m, without its gaps; mistakes are noted."""
         found = []
+        farthest = FARTHEST * self.metre
         for line, cells in self.rows:
-            point = cells[track.column : track.column + 3]
-            if len(point) < 3 or any(map(is_gap, point)):
-                continue
-            values = [number_of(cell) for cell in point]
-            bad = next((k for k, v in enumerate(values) if v is None or abs(v) > FARTHEST * self.metre), None)
-            if bad is None:
-                found.append(values)
-                continue
-            if len(mistakes) > MISTAKES_AT_MOST:
-                break
-            what = (
-                f"must be a number, but is {str(point[bad])[:30]!r}"
-                if values[bad] is None
-                else f"is farther than {FARTHEST:.0f} m: which unit is it in?"
-            )
-            mistakes.append(Mistake(what, file, line, f"{'xyz'[bad]} of {shown(track.name)}"))
+            try:  # the many cells that are as they should be; anything else is looked at below
+                x, y, z = map(float, cells[track.column : track.column + 3])
+            except ValueError:
+                x = y = z = np.inf
+            if abs(x) <= farthest and abs(y) <= farthest and abs(z) <= farthest:  # not of what is no number
+                found.append((x, y, z))
+            elif len(mistakes) <= MISTAKES_AT_MOST:
+                mistakes.extend(self._wrong(track, line, cells, file))
         points = np.array(found, dtype=np.float64).reshape(-1, 3) / self.metre
         somewhere = points.any(axis=1)  # not exactly at the origin, where some systems put what they lost
         return points[somewhere] if self.zeros_are_gaps or somewhere.any() else points
+
+    def _wrong(self, track: Track, line: int, cells: Sequence[str | float], file: str) -> Iterator[Mistake]:
+        """Yield what is wrong with a marker in a frame; nothing, if it was not seen."""
+        point = cells[track.column : track.column + 3]
+        if len(point) < 3 or any(map(is_gap, point)):
+            return
+        for axis, cell in zip("xyz", point, strict=True):
+            value = number_of(cell)
+            if value is not None and abs(value) <= FARTHEST * self.metre:
+                continue
+            what = (
+                f"must be a number, but is {str(cell)[:30]!r}"
+                if value is None
+                else f"is farther than {FARTHEST:.0f} m: which unit is it in?"
+            )
+            yield Mistake(what, file, line, f"{axis} of {shown(track.name)}")
+            return
 
 
 def metre_in(word: str, file: str, line: int | None) -> float:
