@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
+from capture_files import recorded, trc_text
 from exact_targets import random_values, targets_of
 from planted import ROBOT, planted_task
 from planted_approaches import planted_approach
@@ -30,6 +31,7 @@ from synth.guide.loop.checking import check_arm
 from synth.guide.loop.settings import best_settings
 from synth.guide.loop.swept_targets import swept_targets
 from synth.measurement import StandingArm, examine, inspect
+from synth.measurement.captures.formats import capture_in
 from synth.measurement.distances.measured import Precision
 from synth.measurement.distances.reading import parse_measurements
 from synth.measurement.markers.calibration import calibrate
@@ -95,6 +97,7 @@ def recorded_values(folder):
         _surfaces()
         _paths()
         _rigid_links()
+        _captures()
     return made
 
 
@@ -174,6 +177,11 @@ def _rigid_links():
     robot = f"{{d12: 58, d34: 49, link: {link}, rigid_link: {several}, joint_limits_deg: {{}}}}"
     start = "synth: 1\nlength_unit: mm\ntargets: [{position: [500, 0, 300]}]\n"
     synth.parse_task(f"{start}robot: {robot}\n")
+
+
+def _captures():
+    _, _, names, positions = recorded()
+    capture_in(trc_text(names, positions), "walk.trc")
 
 
 def _paths():
