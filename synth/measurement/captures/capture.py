@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import frozen_value
 from synth.errors import InputError, Mistake
 from synth.measurement.captures.cells import is_gap, number_of
 
@@ -45,7 +46,7 @@ class Track:
     column: int
 
 
-@dataclass(frozen=True)
+@frozen_value
 class Capture:
     """A table of frames, whose cells are not looked at yet.
 
