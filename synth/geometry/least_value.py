@@ -61,7 +61,8 @@ def least_values(
         if np.count_nonzero(open_cells) > _MOST_CELLS:
             np.minimum.at(enough, which, bounds)
             return enough, at
-        which, centre, half, spread = (each[open_cells] for each in (which, centre, half, spread))
+        which, centre = which[open_cells], centre[open_cells]
+        half, spread = half[open_cells], spread[open_cells]
         longest = np.eye(sides)[np.argmax(spread, axis=1)]
         half = half * (1.0 - 0.5 * longest)
         which = np.concatenate([which, which])

@@ -121,7 +121,7 @@ def plane_within(
         The rectangle in a frame of its own, and where its middle is, shape (3,), m.
     """
     axes = frame.T[:2]
-    low = -np.max([solid.support(-axes) for solid in region], axis=0)
+    low = np.min([-solid.support(-axes) for solid in region], axis=0)
     high = np.max([solid.support(axes) for solid in region], axis=0)
     off = 0.5 * (low + high) - axes @ point
     return Rectangle(high - low, has_boundary=False), point + off @ axes
