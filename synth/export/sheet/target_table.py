@@ -30,15 +30,21 @@ def listed_targets(solution: Solution) -> Sequence[int]:
 
     Of paths that are followed their ends have one, and no other sample.
     """
-    task, count = solution.task, len(solution.task.targets)
-    if solution.found and task.paths:
-        path = np.append(task.path_of_targets, -1)
-        ends = (path[:-1] >= 0) & ((path[:-1] != np.roll(path, 1)[:-1]) | (path[:-1] != path[1:]))
-        if np.count_nonzero(chosen := task.is_of_its_own | ends) <= _MOST_TARGETS:
-            return np.flatnonzero(chosen).tolist()
+    count, followed = len(solution.task.targets), _own_and_path_ends(solution)
+    if 0 < len(followed) <= _MOST_TARGETS:
+        return followed
     if count <= _MOST_TARGETS or not solution.designs:
         return range(min(count, _MOST_TARGETS))
     return sorted(worst_targets(solution.task, solution.best.verification, _MOST_TARGETS).tolist())
+
+
+def _own_and_path_ends(solution: Solution) -> list[int]:
+    """Return the targets of their own, and the ends of the paths; none where no path is followed."""
+    task = solution.task
+    if not (solution.found and task.paths):
+        return []
+    ends = [np.flatnonzero(task.path_of_targets == number)[[0, -1]] for number in range(len(task.paths))]
+    return sorted({*np.flatnonzero(task.is_of_its_own).tolist(), *np.concatenate(ends).tolist()})
 
 
 def target_table(page: Page, x: float, y: float, solution: Solution) -> float:
@@ -56,7 +62,7 @@ def target_table(page: Page, x: float, y: float, solution: Solution) -> float:
     if len(listed) < len(task.targets):
         count = f"{len(listed)} of {len(task.targets)}"
         heading = f"Targets, worst {count}" if results else f"{count} targets"
-        heading = "Targets, path ends" if solution.found and task.paths else heading
+        heading = "Targets, path ends" if listed == _own_and_path_ends(solution) else heading
     page.text(x, y, heading, 9.5, weight="bold")
     heads = [("miss", 56.0), ("of, mm", 68.0)]
     if solution.found:

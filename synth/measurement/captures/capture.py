@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 import numpy as np
 
@@ -102,17 +102,16 @@ class Capture:
 def metre_in(word: str, file: str, line: int | None) -> float:
     """Return how many of a unit are a metre, or refuse a unit that is not known."""
     unit = word.strip().strip("()[]").lower()
-    for name in (unit, unit.removesuffix("s")):
-        if name in _UNITS:
-            return _UNITS[name]
-    said = f"is {shown(word)}" if unit else "is not said"
-    raise InputError(
-        [
-            Mistake(
-                f"the unit of length {said}: in which are these numbers? There are mm, cm and m", file, line
-            )
-        ]
-    )
+    known = next((name for name in (unit, unit.removesuffix("s")) if name in _UNITS), "")
+    if not known:
+        said = f"is {shown(word)}" if unit else "is not said"
+        refuse(f"the unit of length {said}: in which are these numbers? There are mm, cm and m", file, line)
+    return _UNITS[known]
+
+
+def refuse(what: str, file: str, line: int | None = None) -> NoReturn:
+    """Refuse a file for one mistake, maybe of a line."""
+    raise InputError([Mistake(what, file, line)])
 
 
 def lines_of(text: str) -> list[str]:

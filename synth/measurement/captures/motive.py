@@ -11,7 +11,7 @@ from __future__ import annotations
 import csv
 
 from synth.errors import InputError, Mistake
-from synth.measurement.captures.capture import Capture, Track, lines_of, metre_in, shown
+from synth.measurement.captures.capture import Capture, Track, lines_of, metre_in, refuse, shown
 
 _MEASURED = "marker"
 _SOLVED = ("rigid body marker", "bone marker")
@@ -42,23 +42,17 @@ def motive_capture(text: str, file: str) -> Capture:
     at = next((k for k, (_, cells) in enumerate(rows) if cells[0].lower() == "frame"), None)
     kinds = next((k for k, (_, cells) in enumerate(rows[:at]) if _are_kinds(cells)), None)
     if at is None or kinds is None or at - kinds < 3:
-        raise InputError(
-            [
-                Mistake(
-                    "is an export of Motive without the rows Type, Name and Frame,Time: which marker is "
-                    f"which, and in which unit are these numbers? {_AGAIN}",
-                    file,
-                    rows[0][0],
-                )
-            ]
+        refuse(
+            "is an export of Motive without the rows Type, Name and Frame,Time: which marker is which, and "
+            f"in which unit are these numbers? {_AGAIN}",
+            file,
+            rows[0][0],
         )
     metre = _metre(rows[:kinds], file, rows[0][0])
     measured, solved = _tracks(rows[kinds][1], rows[kinds + 1][1], rows[at - 1][1], rows[at][1])
     if not measured and not solved:
         has = sorted({cell.lower() for cell in rows[kinds][1]} & _TYPES)
-        raise InputError(
-            [Mistake(f"has no positions of markers, only {', '.join(has)}: export the markers too", file)]
-        )
+        refuse(f"has no positions of markers, only {', '.join(has)}: export the markers too", file)
     names = {track.name for track in measured}
     return Capture(
         tuple(measured),
@@ -88,11 +82,9 @@ def _metre(rows: _Rows, file: str, line: int) -> float:
         cells[k + 1] for _, cells in rows for k in range(len(cells) - 1) if cells[k].lower() == "length units"
     }
     if len(said) > 1:
-        raise InputError([Mistake(f"says {' and '.join(map(shown, sorted(said)))} for a unit", file, line)])
+        refuse(f"says {' and '.join(map(shown, sorted(said)))} for a unit", file, line)
     if not said:
-        raise InputError(
-            [Mistake(f"does not say Length Units: in which unit are these numbers? {_AGAIN}", file, line)]
-        )
+        refuse(f"does not say Length Units: in which unit are these numbers? {_AGAIN}", file, line)
     return metre_in(said.pop(), file, line)
 
 

@@ -9,10 +9,8 @@ positions must hold distances against known ones.
 from __future__ import annotations
 
 import csv
-from typing import NoReturn
 
-from synth.errors import InputError, Mistake
-from synth.measurement.captures.capture import Capture, Track, lines_of
+from synth.measurement.captures.capture import Capture, Track, lines_of, refuse
 
 _BEFORE_BODIES, _OF_BODY, _OF_MARKER = 4, 11, 5  # cells
 _LOST = "#"  # is in the cells of what was not seen
@@ -42,13 +40,13 @@ def motive_frames_capture(text: str, file: str) -> Capture:
         for cells in reader:
             word = cells[0].strip().lower() if cells else ""
             if word == "lefthanded":
-                _refuse(
+                refuse(
                     "is left-handed, so all in it is mirrored: export it right-handed", file, reader.line_num
                 )
             if word == "frame":
                 frames.append((reader.line_num, _seen(cells, file, reader.line_num)))
     except csv.Error as error:
-        _refuse(f"is no CSV: {error}", file, reader.line_num)
+        refuse(f"is no CSV: {error}", file, reader.line_num)
     columns = {key: 3 * k for k, key in enumerate(dict.fromkeys(key for _, seen in frames for key in seen))}
     lost = [""] * 3
     rows = [(line, [cell for key in columns for cell in seen.get(key, lost)]) for line, seen in frames]
@@ -61,7 +59,7 @@ def _seen(cells: list[str], file: str, line: int) -> _Seen:
     start = count_at + 1
     end = start + _OF_MARKER * _count(cells, count_at, file, line)
     if len(cells) < end or any(cell.strip() for cell in cells[end:]):
-        _refuse(f"has {len(cells)} cells where {end} are said: which marker is which?", file, line)
+        refuse(f"has {len(cells)} cells where {end} are said: which marker is which?", file, line)
     found: _Seen = {}
     for k in range(start, end, _OF_MARKER):
         name, point = cells[k + 4].strip(), cells[k : k + 3]
@@ -74,9 +72,5 @@ def _count(cells: list[str], at: int, file: str, line: int) -> int:
     """Return how many of something follow, no more than the line has cells."""
     word = cells[at].strip() if at < len(cells) else ""
     if not (word.isascii() and word.isdigit() and len(word) < len(str(len(cells))) + 1):
-        _refuse("does not say how many rigid bodies and markers it holds", file, line)
+        refuse("does not say how many rigid bodies and markers it holds", file, line)
     return int(word)
-
-
-def _refuse(what: str, file: str, line: int) -> NoReturn:
-    raise InputError([Mistake(what, file, line)])

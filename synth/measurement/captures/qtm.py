@@ -5,10 +5,7 @@ Frame and time may stand before the coordinates, with a row of column names or w
 
 from __future__ import annotations
 
-from typing import NoReturn
-
-from synth.errors import InputError, Mistake
-from synth.measurement.captures.capture import Capture, Track, lines_of, shown
+from synth.measurement.captures.capture import Capture, Track, lines_of, refuse, shown
 from synth.measurement.captures.cells import number_of
 
 _MILLIMETRES = 1000.0
@@ -40,9 +37,9 @@ def qtm_capture(text: str, file: str) -> Capture:
     settings = {cells[0]: (k, cells[1:]) for k, (_, cells) in enumerate(rows) if _is_setting(cells[0])}
     included = " ".join(settings.get("DATA_INCLUDED", (0, ["3D"]))[1]).strip()
     if included and "3D" not in included.upper().split():
-        _refuse(f"holds {shown(included)} and not 3D: export the 3D data", file, rows[0][0])
+        refuse(f"holds {shown(included)} and not 3D: export the 3D data", file, rows[0][0])
     if "MARKER_NAMES" not in settings:
-        _refuse("has no row MARKER_NAMES: which marker is which?", file, rows[0][0])
+        refuse("has no row MARKER_NAMES: which marker is which?", file, rows[0][0])
     at, names = settings["MARKER_NAMES"]
     names = [name for name in names if name]
     frames = rows[max(k for k, _ in settings.values()) + 1 :]
@@ -68,9 +65,5 @@ def _before(rows: list[_Row], coordinates: int, file: str, line: int) -> tuple[i
         width -= (width - coordinates) % 2 and all(cells[-1] == "" for _, cells in rows)  # a tab at the end
         before = 2 if width - coordinates == 2 else 0
     if width != before + coordinates:
-        _refuse(f"names {coordinates // 3} markers, and has {width} columns: which is which?", file, line)
+        refuse(f"names {coordinates // 3} markers, and has {width} columns: which is which?", file, line)
     return before, int(header)
-
-
-def _refuse(what: str, file: str, line: int) -> NoReturn:
-    raise InputError([Mistake(what, file, line)])

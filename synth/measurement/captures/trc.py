@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import re
 from itertools import pairwise
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING
 
-from synth.errors import InputError, Mistake
-from synth.measurement.captures.capture import Capture, Track, lines_of, metre_in
+from synth.measurement.captures.capture import Capture, Track, lines_of, metre_in, refuse
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -42,7 +41,7 @@ def trc_capture(text: str, file: str) -> Capture:
     rows = [(number, [cell.strip() for cell in line.split(between)]) for number, line in lines]
     at = next((k for k, (_, cells) in enumerate(rows) if cells[0].lower().startswith("frame")), None)
     if at is None or at + 1 >= len(rows):
-        _refuse("has no rows Frame# and X1 Y1 Z1 that say which marker is in which column", file, rows[-1][0])
+        refuse("has no rows Frame# and X1 Y1 Z1 that say which marker is in which column", file, rows[-1][0])
     tracks = _tracks(rows[at], rows[at + 1], rows[at + 2 :], file)
     return Capture(tracks, rows[at + 2 :], _metre(rows[:at], file))
 
@@ -69,21 +68,17 @@ def _tracks(names: _Row, axes: _Row, frames: Sequence[_Row], file: str) -> tuple
         if _X.fullmatch(axes[1][k]) and _Y.fullmatch(axes[1][k + 1]) and _Z.fullmatch(axes[1][k + 2])
     ]
     if not columns:
-        _refuse("must have the row X1 Y1 Z1 X2 ... below the names of the markers", file, axes[0])
+        refuse("must have the row X1 Y1 Z1 X2 ... below the names of the markers", file, axes[0])
     before = sum(cell.lower().startswith(("frame", "time")) for cell in names[1][:2])
     for line, cells in frames:
         width = max((k + 1 for k, cell in enumerate(cells) if cell), default=0)
         if width > before + 3 * len(columns):
-            _refuse(f"has {width} columns, and X Y Z are said of {before + 3 * len(columns)}", file, line)
+            refuse(f"has {width} columns, and X Y Z are said of {before + 3 * len(columns)}", file, line)
     named = {k: cell for k, cell in enumerate(names[1]) if cell and k >= before}
     if len(named) == len(columns):
         return tuple(Track(name, before + 3 * k) for k, name in enumerate(named.values()))
     if not set(named) <= set(columns):
-        _refuse(
+        refuse(
             f"has {len(named)} names for {len(columns)} times X Y Z: which marker is which?", file, names[0]
         )
     return tuple(Track(name, before + 3 * columns.index(k)) for k, name in named.items())
-
-
-def _refuse(what: str, file: str, line: int) -> NoReturn:
-    raise InputError([Mistake(what, file, line)])

@@ -79,19 +79,7 @@ def verify_targets(
 ) -> Verification:
     """Check a shape at the targets of a task, samples of surfaces and of paths with them.
 
-    What is between samples is not looked at: that `verify` does. Everything is seen from the base of the arm,
-    and from nowhere else; an arm that stands elsewhere than the task says breaks a limit by that alone.
-
-    Args:
-        task: The task.
-        arm: The robot in the shape.
-        joints: Joint angles to consider beside the closest ones and the branches of the inverse
-            kinematics, shape (n, 2), rad: at the closest point the arm may be in the way of something.
-        keep: Whether the arm is to stand at these angles wherever they reach the target within its
-            tolerance, and clear of everything, though others come nearer.
-
-    Returns:
-        The misses by forward kinematics and every limit that is broken.
+    What is between samples is not looked at: that `verify` does, which takes the same arguments.
     """
     refuse_unless("task", task, Task)
     refuse_unless("arm", arm, Arm)
