@@ -59,6 +59,8 @@ class SolverError(SynthError):
 
 
 def in_a_line(error: BaseException) -> str:
-    """Return what an error of any kind says, on one line, with its kind: for what nobody foresaw."""
+    """Return what an error of any kind says, on one line, with its kind where nobody foresaw it."""
     words = " ".join(str(error).split())
+    if words and isinstance(error, SynthError):
+        return words
     return f"{words} ({type(error).__name__})" if words else type(error).__name__

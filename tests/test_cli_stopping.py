@@ -156,11 +156,11 @@ def test_of_a_time_limit_something_is_left_for_writing():
     session = Session(10.0, clock=lambda: now[0])
     now[0] += 3.0
     assert session.remaining == 7.0
-    assert session.for_search(0) == 6.0
-    assert session.for_search(50_000) == pytest.approx(4.5)  # all of them are written
-    assert session.for_search(10**6) == 3.5
+    assert session.for_search(0) == pytest.approx(5.7)
+    assert session.for_search(50_000) == pytest.approx(5.2)  # all of them are written
+    assert session.for_search(10**6) == pytest.approx(2.1)
     now[0] += 6.0
-    assert session.for_search(0) == 0.5
+    assert session.for_search(0) == pytest.approx(0.3)
     now[0] += 1.1
     assert session.remaining == session.for_search(0) == 0.0
     assert not session.is_late()  # a small task may still be looked at
@@ -178,6 +178,16 @@ def test_a_task_that_is_not_read_in_time_is_not_searched_for(tmp_path):
     assert answer.stdout == ""
     assert "before the task was read: nothing was searched for" in answer.stderr
     assert not (tmp_path / "solution.json").exists()
+
+
+def test_a_sheet_is_not_begun_when_the_time_is_up(tmp_path):
+    (tmp_path / "guide.pdf").write_text("of an earlier run")
+    before = "from synth.cli.session import Session\nSession.is_up = lambda self: True\n"
+    answer = program("solve", ONE_TARGET, "-o", tmp_path, before=before)
+    assert answer.returncode == 0  # the answer is whole without it
+    assert "guide.pdf could not be made: the time limit was over before the sheet was begun" in answer.stderr
+    assert json.loads((tmp_path / "solution.json").read_text())["status"] == "found"
+    assert not (tmp_path / "guide.pdf").exists()
 
 
 def test_signals_are_as_before_after_a_command():

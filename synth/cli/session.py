@@ -23,8 +23,9 @@ if TYPE_CHECKING:
     from synth.synthesis import Progress
 
 _T = TypeVar("_T")
-_WRITING = 1.0  # s, what drawing the sheet and writing take on a usual machine
-_WRITING_ONE = 3e-5  # s, likewise of each of many targets
+_WRITING = 1.3  # s, what drawing the sheet and writing take on a usual machine
+_WRITING_ONE = 1e-5  # s, likewise of each of many targets
+_SEARCHING = 0.3  # of the time left, at least for the search
 _LATE = 0.4  # s, in which a small task is still read and looked at
 DEBUG = "SYNTH_DEBUG"  # if this is set in the environment, what nobody foresaw is shown with its traceback
 
@@ -58,6 +59,10 @@ class Session:
         """The time left, s; never below 0."""
         return max(self._until - self._clock(), 0.0)
 
+    def is_up(self) -> bool:
+        """Whether the time is up."""
+        return self.remaining <= 0.0
+
     def is_late(self) -> bool:
         """Whether the time is up for a while, so that it is too late to begin anything."""
         return self._clock() > self._until + _LATE
@@ -68,7 +73,7 @@ class Session:
         Args:
             count: How many targets are written.
         """
-        return max(self.remaining - _WRITING - count * _WRITING_ONE, 0.5 * self.remaining)
+        return max(self.remaining - _WRITING - count * _WRITING_ONE, _SEARCHING * self.remaining)
 
     @contextmanager
     def interruptible(self) -> Iterator[None]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from synth.cli.exit_codes import ExitCode
 from synth.cli.say import say
 from synth.cli.session import DEBUG, search_progress
-from synth.errors import SynthError
+from synth.errors import SynthError, TimeLimitError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -105,11 +105,13 @@ def _tell_of_breakdown(solution: Solution) -> None:
 
 
 def _write(session: Session, solution: Solution, output: Path) -> bool:
-    """Write the files, and say which; whether all of them are there."""
+    """Write the files, and say which; whether all of them are there, but for those that were too late."""
     from synth.export import write_what_can_be
 
     try:
-        written = session.attempt("writing", lambda: write_what_can_be(solution, output), None)
+        written = session.attempt(
+            "writing", lambda: write_what_can_be(solution, output, is_up=session.is_up), None
+        )
     except SynthError as error:  # the disk is full, say: the answer is still to be printed
         say(str(error), on_stderr=True)
         return False
@@ -121,7 +123,7 @@ def _write(session: Session, solution: Solution, output: Path) -> bool:
         say(sentence, on_stderr=True)
     if any(isinstance(error, KeyboardInterrupt) for error in written.failed.values()):
         raise KeyboardInterrupt
-    return not written.failed
+    return all(isinstance(error, TimeLimitError) for error in written.failed.values())
 
 
 def _say(session: Session, solution: Solution, *, form: str, show_all: bool) -> bool:

@@ -12,16 +12,17 @@ from typing import TYPE_CHECKING
 
 from synth.arrays import frozen_value
 from synth.checks import refuse_unless
-from synth.errors import InputError, Mistake, SynthError, in_a_line
+from synth.errors import InputError, Mistake, SynthError, TimeLimitError, in_a_line
 from synth.export.markers import markers_csv
 from synth.export.planners import KINDS, kinds_of, planner_files
 from synth.export.sheet import draw_sheet
 from synth.export.solution_json import solution_to_json
 from synth.guide import make_guide
 from synth.synthesis import Solution
+from synth.watch import never
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 _MOST_INDENTED = 1000  # targets in a file that is laid out for the eye
 SOLUTION_FILES = ("solution.json", "guide.pdf", "markers.csv")
@@ -66,12 +67,15 @@ def write_files(solution: Solution, directory: str | os.PathLike[str]) -> list[P
     return list(written.paths)
 
 
-def write_what_can_be(solution: Solution, directory: str | os.PathLike[str]) -> Written:
+def write_what_can_be(
+    solution: Solution, directory: str | os.PathLike[str], *, is_up: Callable[[], bool] = never
+) -> Written:
     """Write the files of a solution, without the sheet if it cannot be drawn, whatever the reason.
 
     Args:
         solution: What a synthesis found, whatever its status.
         directory: Where to; it is made if it is not there. Files of these names are replaced.
+        is_up: Asked whether the time is up: then a sheet, which takes a second, is not begun.
 
     Raises:
         SynthError: They cannot be written. Files of an earlier run are then as they were.
@@ -84,11 +88,17 @@ def write_what_can_be(solution: Solution, directory: str | os.PathLike[str]) -> 
     }
     failed: dict[str, BaseException] = {}
     try:
+        _see_the_time(is_up)
         files["guide.pdf"] = draw_sheet(solution, guide)
     except (Exception, KeyboardInterrupt) as error:  # noqa: BLE001 - the answer is not lost with its drawing
         failed["guide.pdf"] = error
     files = {name: files[name] for name in SOLUTION_FILES if name in files}
     return Written(tuple(write_all(files, directory, without=failed)), failed)
+
+
+def _see_the_time(is_up: Callable[[], bool]) -> None:
+    if is_up():
+        raise TimeLimitError("the time limit was over before the sheet was begun")
 
 
 def write_planner_files(

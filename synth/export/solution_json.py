@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from synth.checks import refuse_unless
-from synth.export.json_data import plain
+from synth.export.json_data import Plain, plain
 from synth.export.surface_json import paths_to_json, surfaces_to_json
-from synth.export.task_json import arcs_to_json, task_to_json
+from synth.export.task_json import arcs_to_json, targets_asked_for, task_to_json
 from synth.guide import MARKERS, make_guide
-from synth.synthesis import Bound, Solution, target_results, worst_targets
+from synth.synthesis import Bound, Solution, TargetResult, target_results, worst_targets
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -192,23 +192,11 @@ def _targets(task: Task, design: Design) -> list[object]:
     return list(target_results(task, design.arm, design.verification, _listed(task, design)))
 
 
-def _targets_missed(task: Task) -> list[object]:
-    return [
-        {
-            "name": target.name,
-            "position": target.position,
-            "reached": None,
-            "miss": None,
-            "tolerance": target.tolerance,
-            "within_tolerance": False,
-            "approach": target.approach,
-            "astray": None,
-            "clearance": None,
-            "joints": None,
-            "alternatives": [],
-        }
-        for target in task.targets[:MOST_TARGETS]
-    ]
+def _targets_missed(task: Task) -> Plain:
+    untold = dict.fromkeys(field.name for field in fields(TargetResult))
+    untold |= {"within_tolerance": False, "alternatives": []}
+    asked = targets_asked_for(task.table[:MOST_TARGETS])
+    return Plain(untold | {key: each[key] for key in untold.keys() & each.keys()} for each in asked)
 
 
 def _guide(guide: Guide) -> dict[str, object]:

@@ -16,6 +16,8 @@ from synth.geometry import Box
 from synth.task import Floor
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from synth.paths import Path
     from synth.robot import Interval, LinkShape, RigidLink, Robot
     from synth.task import Obstacle, TargetTable, Task
@@ -23,7 +25,6 @@ if TYPE_CHECKING:
 
 def task_to_json(task: Task) -> dict[str, object]:
     """Return a task as data for `plain`: arrays, mappings and numbers, every default written out."""
-    table = task.table  # of a million points: in columns
     return {
         "name": task.name,
         "robot": _robot(task.robot),
@@ -33,22 +34,20 @@ def task_to_json(task: Task) -> dict[str, object]:
         "floor_at_base": isinstance(task.floor, Floor),
         "topology": task.topology.value,
         "objective": task.objective.value,
-        "targets": Plain(
-            {"name": name, "position": position, "tolerance": tolerance, "weight": weight} | approach
-            for name, position, tolerance, weight, approach in zip(
-                table.names,
-                table.positions.tolist(),
-                table.tolerances.tolist(),
-                table.weights.tolist(),
-                _approaches(table),
-                strict=True,
-            )
-        ),
+        "targets": Plain(targets_asked_for(task.table)),
         "surfaces": _surfaces(task),
         "paths": [_path(path) for path in task.paths],
         "obstacles": [_obstacle(obstacle) for obstacle in task.obstacles],
         "current": None if task.current is None else {"arcs": arcs_to_json(task.current)},
     }
+
+
+def targets_asked_for(table: TargetTable) -> Iterator[dict[str, object]]:
+    """Yield each target as a task has it; of a million points read from columns."""
+    columns = (table.positions, table.tolerances, table.weights)
+    rows = zip(table.names, *(column.tolist() for column in columns), _approaches(table), strict=True)
+    for name, position, tolerance, weight, approach in rows:
+        yield {"name": name, "position": position, "tolerance": tolerance, "weight": weight} | approach
 
 
 def _approaches(table: TargetTable) -> list[dict[str, object]]:

@@ -94,7 +94,8 @@ def for_all_targets(task: Task, designs: Sequence[Design], seed: int, watch: Wat
         watch.tell(phase="verifying with all targets")
         with watch.on("verifying"):
             seen, design = verified_in_time(task, arm, watch)
-            if not design.verification.possible:  # the steps know neither floor nor obstacles
+            # The steps know neither floor nor obstacles.
+            if not design.verification.possible and arm is not found:
                 seen, design = verified_in_time(task, found, watch)
         unseen = design.verification.unseen
         if not design.verification.possible:

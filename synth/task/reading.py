@@ -165,7 +165,6 @@ def _task(document: Document, directory: Path, name: str) -> Task:
     waypoints = _files_of(document, "path", {"csv": read_points}, directory)
     document.see_the_time()
     file = validate(document, SampledTaskFile if {"surface", "path"} & content.keys() else TaskFile)
-    document.see_the_time()
     if file is None or document.is_wrong:
         raise document.error()
     if isinstance(file.robot, RobotEntry):
@@ -176,6 +175,7 @@ def _task(document: Document, directory: Path, name: str) -> Task:
         refuse_if_any(unmeant_distances(task, file.length_unit))
     except InputError as error:
         raise document.refuse(error) from None
+    document.see_the_time()
     return task
 
 
