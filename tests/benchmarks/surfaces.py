@@ -2,10 +2,11 @@
 
     python tests/benchmarks/surfaces.py [--tasks 100] [--kinds points mesh torus]
 
-Points: with noise of 0 and 2 mm, and 0 and 20 % outliers (then a coverage of 0.8). A task counts if it is
-found and its root mean square miss, over the points that are no outliers, is at most 0.1 mm, or with noise at
-most 1.05 times that of the planted arm, in one of the shapes told. Tori: the share of the area told beside
-an independent count on ten times the samples. Times are of this machine.
+Points: with noise of 0 and 2 mm, and 0 and 20 % outliers (then a coverage of 0.8). The tolerance asked for is
+0.1 mm, or with noise 1.1 times the worst miss of the planted arm: within a tolerance it is not the least miss
+that counts. A task counts if it is found and its root mean square miss, over the points that are no outliers,
+is at most 0.1 mm, or with noise at most 1.05 times that of the planted arm, in one of the shapes told. Tori:
+the share of the area told beside an independent count on ten times the samples. Times are of a processor.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from synth.surfaces import Scan
 from synth.synthesis import solve, verify
 
 EXACT, NEARLY = 1e-4, 1.05  # m; of the planted arm's
+ROOM = 1.1  # of the planted arm's worst miss, the tolerance
 
 
 def rms(arm, points) -> float:
@@ -35,8 +37,10 @@ def rms(arm, points) -> float:
 
 def of_points(seed: int, noise: float, outliers: float) -> tuple[bool, str]:
     task, planted, inliers = as_points(seed, noise=noise, outliers=outliers)
-    solution = solve(task)
     points = task.table.positions[inliers]
+    worst = float(planted.closest_joints(points)[1].max())
+    task = as_points(seed, noise=noise, outliers=outliers, tolerance=max(EXACT, ROOM * worst))[0]
+    solution = solve(task)
     least = min((rms(design.arm, points) for design in solution.designs), default=np.inf)
     most = max(EXACT, NEARLY * rms(planted, points) if noise else 0.0)
     told = f"{solution.status.value}, {1e3 * least:.3f} mm RMS of {1e3 * most:.3f}"
@@ -44,7 +48,7 @@ def of_points(seed: int, noise: float, outliers: float) -> tuple[bool, str]:
 
 
 def of_mesh(seed: int) -> tuple[bool, str]:
-    task, _ = as_mesh(seed, tolerance=EXACT * 5)
+    task, _ = as_mesh(seed, tolerance=EXACT)
     solution = solve(task)
     least = min((rms(design.arm, task.table.positions) for design in solution.designs), default=np.inf)
     return solution.found and least <= EXACT, f"{solution.status.value}, {1e3 * least:.3f} mm RMS"
@@ -79,9 +83,9 @@ def main() -> None:
     for seed in range(given.first, given.first + given.tasks):
         for kind in given.kinds:
             for name, run in runs[kind].items():
-                began = time.perf_counter()
+                began = time.process_time()
                 good, told = run(seed)
-                times[name].append(time.perf_counter() - began)
+                times[name].append(time.process_time() - began)
                 counts[name] += good
                 if not good:
                     print(f"  {name}, seed {seed}: {told}", flush=True)
