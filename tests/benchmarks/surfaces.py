@@ -48,7 +48,7 @@ def of_points(seed: int, noise: float, outliers: float) -> tuple[bool, str]:
 
 
 def of_mesh(seed: int) -> tuple[bool, str]:
-    task, _ = as_mesh(seed, tolerance=EXACT)
+    task, _ = as_mesh(seed, tolerance=5 * EXACT)  # triangles cut corners
     solution = solve(task)
     least = min((rms(design.arm, task.table.positions) for design in solution.designs), default=np.inf)
     return solution.found and least <= EXACT, f"{solution.status.value}, {1e3 * least:.3f} mm RMS"
