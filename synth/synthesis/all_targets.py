@@ -10,7 +10,7 @@ import numpy as np
 from synth.synthesis.check import proven_between, verify_targets
 from synth.synthesis.many_targets import least_worst, ranked
 from synth.synthesis.search import led_to
-from synth.synthesis.starts import most_covered, random_part, refined_for_all
+from synth.synthesis.starts import best_covering, random_part, refined_for_all
 from synth.synthesis.wanted import Design, best_of
 from synth.task import Objective
 
@@ -29,10 +29,6 @@ _LED_BETWEEN = 3  # times that shapes are led to what they miss, or where nothin
 _A_FEW = 0.2  # share of the targets: of more a shape misses not only what is in a dead zone
 _PROVEN_BETWEEN = 3  # shapes that are told where surfaces and paths are to be looked at between samples
 _COVERING = 3  # shapes that are looked at where a part of a surface may be left
-_REWEIGHTED = 6  # times that outliers near the surface are left out
-_USUAL = 3.5  # times the median miss: of normal noise two in a hundred are missed more
-_ROUNDING = 1e-8  # m
-_CHOSEN_ANEW = 8  # times that what is covered best of a surface is chosen
 
 
 @dataclass
@@ -87,7 +83,7 @@ def for_all_targets(task: Task, designs: Sequence[Design], seed: int, watch: Wat
             break
         with watch.on("solving"):
             arm = (
-                _best_covering(task, found, watch) if task.is_partial else refined_for_all(task, found, watch)
+                best_covering(task, found, watch) if task.is_partial else refined_for_all(task, found, watch)
             )
             if not task.is_partial and task.objective is Objective.MINIMAX:
                 arm = least_worst(task, arm, watch)
@@ -105,35 +101,6 @@ def for_all_targets(task: Task, designs: Sequence[Design], seed: int, watch: Wat
         elif not verified:
             return replace(whole, task=seen, designs=best_of(seen, [design], watch.is_up))
     return replace(whole, designs=best_of(task, verified, watch.is_up))
-
-
-def _best_covering(task: Task, arm: Arm, watch: Watch) -> Arm:
-    """Return an arm after steps on what it covers best, which is chosen anew until it stays the same."""
-    check = verify_targets(task, arm)
-    in_the_way = ~np.array(check.within_tolerance) & (check.misses <= task.tolerances)
-    chosen: Task | None = None
-    for _ in range(_CHOSEN_ANEW):
-        covered = most_covered(task, arm, in_the_way)
-        if watch.is_up() or (chosen is not None and covered.table.names == chosen.table.names):
-            break
-        chosen, arm = covered, refined_for_all(covered, arm, watch)
-    return _without_outliers(most_covered(task, arm, in_the_way), arm, watch)
-
-
-def _without_outliers(task: Task, arm: Arm, watch: Watch) -> Arm:
-    """Return an arm after steps on what it misses no more than others, if all is within tolerance still.
-
-    Outliers that happen to lie near the surface are of what is covered best, and draw it aside a little.
-    """
-    better = arm
-    for _ in range(_REWEIGHTED):
-        misses = better.closest_joints(task.table.positions)[1]
-        if watch.is_up() or np.any(misses > task.tolerances):
-            break
-        arm = better
-        usual = np.flatnonzero(misses <= _USUAL * float(np.median(misses)) + _ROUNDING)
-        better = refined_for_all(replace(task, targets=task.table.take(usual)), arm, watch)
-    return arm
 
 
 def led_to_missed(part: Task, whole: WholeTask, seed: int, watch: Watch) -> WholeTask:

@@ -1,5 +1,6 @@
 """Start points: shapes at random, led to the targets, the most promising first."""
 
+from synth.synthesis.starts.covering import best_covering
 from synth.synthesis.starts.exact_arms import exact_arms, nearest_to_exact_arms
 from synth.synthesis.starts.refined import Refined, relative_weights
 from synth.synthesis.starts.refinement import level, refine
@@ -20,6 +21,7 @@ __all__ = [
     "Refined",
     "Start",
     "as_it_is_and_turned",
+    "best_covering",
     "covered_part",
     "estimated_misses",
     "exact_arms",
