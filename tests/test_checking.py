@@ -10,11 +10,11 @@ from standing import BARS, HOLD, SIGMA, seen
 from synth.guide.loop.aim import aimed, best_aims, towards
 from synth.guide.loop.check_text import check_text, way_words
 from synth.guide.loop.checking import Verdict, best_joints, check_arm
-from synth.guide.loop.hand import Hand, errors
 from synth.guide.loop.outlook import outlook
 from synth.guide.loop.settings import best_settings, with_settings
 from synth.guide.loop.trying_on import value_of_trying
 from synth.measurement import StandingArm, fit_arm, joints_closest_to, joints_following
+from synth.measurement.hand import Hand, random_errors
 from synth.rounding import rounded_up
 from synth.synthesis import Design, solve, verify
 
@@ -108,7 +108,7 @@ def test_the_chances_told_are_what_happens(scene):
     told, within = [], []
     for _ in range(80):
         # Far more widely spread than the camera errs: else what is known of the spread would count, too.
-        true = wanted.moved(rng.uniform(0.0, 0.6) * errors(HAND.placement, 1, rng)[0])
+        true = wanted.moved(rng.uniform(0.0, 0.6) * random_errors(HAND.placement, 1, rng)[0])
         measured = fit(scene, true, BARS, rng)
         joints = best_joints(measured.arm, task, designs[0].verification.joints)
         view = outlook(measured, joints, task.positions_in_base, task.tolerances)
@@ -149,7 +149,7 @@ def test_the_cost_of_an_aim_is_the_mean_square_over_errors_of_the_hand(scene):
     move, there, cost = aimed(wanted, np.zeros(6), joints, targets, np.ones(len(targets)), hand, 0.0)
     arms = wanted.moved(move)
     arms = arms.displaced(
-        np.hstack([np.zeros((4000, 5)), errors(hand.floor, 4000, np.random.default_rng(0))])
+        np.hstack([np.zeros((4000, 5)), random_errors(hand.floor, 4000, np.random.default_rng(0))])
     )
     squares = np.sum((arms.forward(joints_following(arms, there, targets)) - targets) ** 2, axis=(1, 2))
     assert np.mean(squares) == pytest.approx(cost, rel=0.1)

@@ -134,3 +134,55 @@ def test_calibration_from_a_file(scene):
     result = invoked("calibrate", path, scene[3])
     assert result.exit_code == 1
     assert "does not determine the surface" in result.output
+
+
+def checked_into(folder, scene, arm, *options):
+    result = invoked(
+        "check", markers(scene, arm), scene[3], "--base-calibrated", "-o", folder, "--json", *options
+    )
+    return json.loads(result.stdout)
+
+
+def test_what_a_hand_did_is_told_by_each_check_and_learned_from_all(scene, tmp_path):
+    aim = wanted(scene)
+    off = np.array([0.006, -0.005, 0.004, 0.0, 0.02, -0.04])
+    first = checked_into(tmp_path / "1", scene, aim.moved(off))
+    assert first["hand"]["deed"] == "placed"
+    np.testing.assert_allclose(first["hand"]["error"][:3], off[:3], atol=1e-3)
+    assert np.linalg.norm(first["hand"]["error"][3:]) == pytest.approx(np.hypot(0.02, 0.04), abs=0.02)
+    asked = np.array([*first["correction"]["move"], *first["correction"]["rotate"]])
+    error = np.array([0.001, 0.002, -0.002, 0.0, 0.0, 0.0])
+    corrected = aim.moved(off).moved(asked + error)
+    second = checked_into(tmp_path / "2", scene, corrected, "--after", tmp_path / "1" / "check.json")
+    assert second["hand"]["deed"] == "corrected"
+    np.testing.assert_allclose(second["hand"]["asked"], asked)
+    np.testing.assert_allclose(second["hand"]["error"][:3], error[:3], atol=1e-3)
+    assert second["lock"]
+    stiff = corrected.moved(np.array([0.0, 0.0, 0.004, 0.0, 0.0, 0.0]))
+    after = ("--after", tmp_path / "2" / "check.json", "--stiff")
+    third = checked_into(tmp_path / "3", scene, stiff, *after)
+    assert third["hand"]["deed"] == "stiffened"
+    assert not np.any(third["hand"]["asked"])
+
+    learned = invoked("learn", tmp_path, "-o", tmp_path / "hand.json")
+    assert learned.exit_code == 0, learned.output
+    assert learned.output.count("times seen: 1\n") == 3
+    hand = json.loads((tmp_path / "hand.json").read_text())
+    assert hand["checks"] == {"placed": 1, "corrected": 1, "stiffened": 1}
+    assert hand["drift"]["shift"] > 1.5e-3  # 4 mm were seen where 1.5 mm are supposed
+    told = checked_into(tmp_path / "4", scene, aim.moved(off), "--hand", tmp_path / "hand.json")
+    assert told["correction"]["expected_worst_miss"] != first["correction"]["expected_worst_miss"]
+
+
+def test_there_is_nothing_to_learn_from_other_files(scene, tmp_path):
+    nothing = invoked("learn", tmp_path)
+    assert nothing.exit_code == 2
+    assert "nothing to learn from" in nothing.output
+    solution = invoked("learn", scene[3])
+    assert solution.exit_code == 2
+    assert "schema" in solution.output
+    (tmp_path / "hand.json").write_text('{"schema": "synth.hand/1", "share": -0.4}')
+    wrong = invoked("check", markers(scene, wanted(scene)), scene[3], "--hand", tmp_path / "hand.json")
+    assert wrong.exit_code == 2
+    assert "share" in wrong.output
+    assert "placement" in wrong.output

@@ -54,9 +54,15 @@ def test_two_swings_that_are_calm_are_as_good():
     assert first({"largest_swing": np.radians(121), "bend": 1.0}, {"largest_swing": np.radians(20)}) == 1
 
 
+def test_a_swing_is_better_than_what_no_hand_can_hold():
+    swings = {"largest_swing": np.radians(149)}
+    assert first(swings | {"expected_worst_miss": 5e-3}, {"expected_worst_miss": 22e-3}) == 0
+    assert first(swings | {"expected_worst_miss": 5e-3}, {"expected_worst_miss": 14e-3}) == 1
+
+
 def test_the_order_is_a_permutation_and_does_not_depend_on_the_order_given():
     rng = np.random.default_rng(0)
-    table = rng.uniform(size=(60, 6)) * STEPS * 4
+    table = rng.uniform(size=(60, len(STEPS))) * STEPS * 4
     table[:, -1] = rng.uniform(size=60)  # no two bends are alike
     order = preferred(table)
     assert sorted(order) == list(range(60))

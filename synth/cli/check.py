@@ -5,15 +5,35 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from synth.cli.exit_codes import ExitCode
 from synth.cli.say import say
 from synth.export import check_to_json, json_bytes, refusal_to_json, write_all
-from synth.guide import Verdict, best_settings, check_arm, check_text, hold_posture
-from synth.measurement import StandingArm, examine, load_readings, sigma_of
+from synth.guide import (
+    Verdict,
+    best_settings,
+    check_arm,
+    check_text,
+    hold_posture,
+)
+from synth.measurement import (
+    Deed,
+    StandingArm,
+    aim_of_check,
+    examine,
+    hand_error,
+    load_hand,
+    load_readings,
+    sigma_of,
+)
 from synth.solution_file import load_solved
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from synth.arrays import FloatArray
+    from synth.measurement import ArmFit, HandError
 
 
 def check_file(
@@ -28,6 +48,8 @@ def check_file(
     confidence: float,
     stiff: bool,
     settings_within: float,
+    after: Path | None,
+    hand: Path | None,
 ) -> ExitCode:
     """Check a file of markers against a solution and say what to do.
 
@@ -42,6 +64,9 @@ def check_file(
         confidence: Chance that all targets are within tolerance from which on the link is locked.
         stiff: Whether the link was stiff already when it was measured.
         settings_within: How far base and tool can be set after locking, m; 0: not at all.
+        after: The file of the check before, whose correction was carried out, or after which the link was
+            stiffened; None if the link was just placed.
+        hand: The file of the hand that bends it; None: as published.
 
     Returns:
         The exit code.
@@ -49,6 +74,8 @@ def check_file(
     found = load_solved(solution)
     task, designs, arm = found.task, found.designs, found.robot
     joint1 = hold_posture(task, arm).joint1
+    before = None if after is None else aim_of_check(after)
+    bent_by = None if hand is None else load_hand(hand)
     readings = load_readings(measured, task.robot, joint1)
     wanted = StandingArm.of(arm, joint1)
     examination = examine(
@@ -59,13 +86,16 @@ def check_file(
         code = ExitCode.WRONG_INPUT
     else:
         fit = examination.fit
-        check = check_arm(task, designs, fit, corrections=corrections, confidence=confidence, stiff=stiff)
+        check = check_arm(
+            task, designs, fit, corrections=corrections, confidence=confidence, stiff=stiff, hand=bent_by
+        )
+        told = _told_of_hand(fit, wanted, before, stiff=stiff)
         settings = (
             best_settings(task, task.robot, fit, check.now.joints, base=settings_within, tool=settings_within)
             if settings_within > 0.0
             else None
         )
-        content = check_to_json(check, examination, settings)
+        content = check_to_json(check, examination, settings, told)
         text = check_text(check, settings, examination.rejected)
         code = ExitCode.DONE if check.verdict is Verdict.LOCK else ExitCode.NOT_MET
     for warning in readings.warnings:
@@ -77,3 +107,20 @@ def check_file(
     else:
         say(text, on_stderr=code is ExitCode.WRONG_INPUT)
     return code
+
+
+def _told_of_hand(
+    fit: ArmFit,
+    wanted: StandingArm,
+    before: tuple[FloatArray, FloatArray, FloatArray] | None,
+    *,
+    stiff: bool,
+) -> HandError | None:
+    """Return what an arm tells of the hand, by where the check before wanted it, or else the solution."""
+    if not fit.shows_axes:
+        return None
+    if before is None:
+        return None if stiff else hand_error(fit, Deed.PLACED, wanted.end, wanted.axis, np.zeros(6))
+    end, axis, asked = before
+    deed = Deed.CORRECTED if asked.any() else Deed.STIFFENED
+    return hand_error(fit, deed, end, axis, asked)

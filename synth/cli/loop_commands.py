@@ -42,6 +42,14 @@ if TYPE_CHECKING:
     "--settings", "settings_within", metavar="MM", type=click.FloatRange(0.0, 1000.0), default=0.0,
     help="Say how to set base and tool after locking, each within so many millimetres.",
 )  # fmt: skip
+@click.option(
+    "--after", metavar="CHECK", type=click.Path(path_type=Path),
+    help="check.json of the check before, after which the link was corrected as told, or stiffened.",
+)  # fmt: skip
+@click.option(
+    "--hand", metavar="HAND", type=click.Path(path_type=Path),
+    help="hand.json of who bends the link, by `synth learn`; a hand as published unless told.",
+)  # fmt: skip
 def check(
     measured: Path,
     solution: Path,
@@ -54,6 +62,8 @@ def check(
     confidence: float,
     stiff: bool,
     settings_within: float,
+    after: Path | None,
+    hand: Path | None,
 ) -> None:
     """Say what to do with the link as it stands: lock it, correct it, or leave it at that.
 
@@ -75,7 +85,7 @@ def check(
             measured, solution, output,
             as_json=as_json, corrections=corrections_left, marker_error=marker_error / 1000.0,
             base_calibrated=base_calibrated, confidence=confidence, stiff=stiff,
-            settings_within=settings_within / 1000.0,
+            settings_within=settings_within / 1000.0, after=after, hand=hand,
         )  # fmt: skip
 
     sys.exit(run(command, math.inf))
@@ -121,4 +131,32 @@ def calibrate(
     sys.exit(run(command, math.inf))
 
 
-COMMANDS = (calibrate, check)
+@click.command()
+@click.argument("checks", metavar="CHECK...", type=click.Path(path_type=Path), nargs=-1, required=True)
+@click.option(
+    "-o", "--output", metavar="FILE", type=click.Path(path_type=Path), help="Write the hand into this file."
+)  # fmt: skip
+@click.option("--json", "as_json", is_flag=True, help="Print the hand as JSON and nothing else.")
+def learn(checks: tuple[Path, ...], output: Path | None, *, as_json: bool) -> None:
+    """Learn one person's hand from the checks of what that person bent.
+
+    CHECK is a file that `synth check -o` wrote, or a folder of them. What was asked of the hand each time is
+    known where the check before was named by --after. `synth check --hand` then expects of a correction what
+    this hand makes of it.
+
+    \b
+    Exit codes:
+      0  learned
+      2  wrong input, or nothing to learn from
+    """
+    from synth.cli.session import Session, run
+
+    def command(_session: Session) -> ExitCode:
+        from synth.cli.learn import learn_files
+
+        return learn_files(checks, output, as_json=as_json)
+
+    sys.exit(run(command, math.inf))
+
+
+COMMANDS = (calibrate, check, learn)

@@ -12,6 +12,7 @@ from synth.export.files import (
     write_planner_files,
     write_what_can_be,
 )
+from synth.export.hand_json import hand_to_json
 from synth.export.inspection import (
     file_names,
     inspection_text,
@@ -34,6 +35,7 @@ __all__ = [
     "draw_robot",
     "draw_sheet",
     "file_names",
+    "hand_to_json",
     "inspection_text",
     "inspections_markdown",
     "inspections_to_json",

@@ -6,22 +6,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from synth.export.hand_json import hand_error_to_json
 from synth.export.json_data import plain
 from synth.guide import Verdict, correction_sentence, headline_sentence
+from synth.measurement import CHECK_SCHEMA
 from synth.version import __version__
 
 if TYPE_CHECKING:
     from synth.guide import Check, Correction, Settings
-    from synth.measurement import Examination
-
-SCHEMA = "synth.check/1"
+    from synth.measurement import Examination, HandError
 
 
 def refusal_to_json(examination: Examination) -> dict[str, Any]:
     """Return readings that are not believed as plain data."""
     return plain(
         {
-            "schema": SCHEMA,
+            "schema": CHECK_SCHEMA,
             "version": __version__,
             "status": Verdict.UNUSABLE.value,
             "message": examination.refusal,
@@ -31,17 +31,21 @@ def refusal_to_json(examination: Examination) -> dict[str, Any]:
             "targets": [],
             "correction": None,
             "settings": None,
+            "hand": None,
         }
     )
 
 
-def check_to_json(check: Check, examination: Examination, settings: Settings | None) -> dict[str, Any]:
+def check_to_json(
+    check: Check, examination: Examination, settings: Settings | None, hand: HandError | None = None
+) -> dict[str, Any]:
     """Return a check as plain data.
 
     Args:
         check: The check.
         examination: What it stands on.
         settings: What to set after locking, or None.
+        hand: What it tells of the hand, or None.
 
     Returns:
         Dictionaries, lists, strings, numbers and None, for `json.dumps(..., allow_nan=False)`.
@@ -49,7 +53,7 @@ def check_to_json(check: Check, examination: Examination, settings: Settings | N
     fit, now = check.fit, check.now
     zero = np.cross(fit.arm.frame[:, 0], fit.arm.frame[:, 2])
     content = {
-        "schema": SCHEMA,
+        "schema": CHECK_SCHEMA,
         "version": __version__,
         "status": check.verdict.value,
         "message": headline_sentence(check),
@@ -88,6 +92,7 @@ def check_to_json(check: Check, examination: Examination, settings: Settings | N
         "expected_worst_miss": now.expected_worst,
         "correction": None if check.correction is None else _correction(check, check.correction),
         "settings": None if settings is None else _settings(settings),
+        "hand": None if hand is None else hand_error_to_json(hand),
     }
     return plain(content)
 

@@ -10,6 +10,7 @@ from synth.guide.loop import (
     check_arm,
     check_text,
     correction_sentence,
+    hand_text,
     headline_sentence,
     swept_targets,
 )
@@ -35,6 +36,7 @@ __all__ = [
     "check_text",
     "correction_sentence",
     "guide_text",
+    "hand_text",
     "headline_sentence",
     "hold_posture",
     "instructions",

@@ -11,6 +11,8 @@ Markers say where both axes are: `examine` refuses or mends what cannot be, `fit
 arm that stands there, with its covariance.
 
     Readings -> Examination -> ArmFit
+
+Checks of what a hand bent tell how good it is: `learned_hand`.
 """
 
 from synth.measurement.distances import (
@@ -29,6 +31,20 @@ from synth.measurement.distances import (
     load_measurements,
     nearest_realisable,
     sample_shapes,
+)
+from synth.measurement.hand import (
+    CHECK_SCHEMA,
+    HAND_SCHEMA,
+    SUPPOSED_COUNT,
+    Deed,
+    Hand,
+    HandError,
+    aim_of_check,
+    errors_of_checks,
+    hand_error,
+    learned_hand,
+    load_hand,
+    random_errors,
 )
 from synth.measurement.markers import (
     MARKER_ERROR,
@@ -57,11 +73,17 @@ from synth.measurement.markers import (
 from synth.measurement.schema import measured_schema
 
 __all__ = [
+    "CHECK_SCHEMA",
+    "HAND_SCHEMA",
     "MARKER_ERROR",
+    "SUPPOSED_COUNT",
     "ArmFit",
     "Calibration",
+    "Deed",
     "Examination",
     "Fit",
+    "Hand",
+    "HandError",
     "Inspection",
     "LinkFit",
     "Marker",
@@ -74,16 +96,21 @@ __all__ = [
     "Spread",
     "StandingArm",
     "Suspect",
+    "aim_of_check",
     "calibrate",
     "cross",
+    "errors_of_checks",
     "examine",
     "find_misprint",
     "fit_arm",
     "fit_link",
+    "hand_error",
     "inspect",
     "joints_closest_to",
     "joints_following",
+    "learned_hand",
     "left_to_joints",
+    "load_hand",
     "load_measurements",
     "load_points",
     "load_readings",
@@ -92,6 +119,7 @@ __all__ = [
     "measured_schema",
     "nearest_realisable",
     "onto_vertical",
+    "random_errors",
     "rotation_matrix",
     "sample_shapes",
     "sigma_of",

@@ -2,6 +2,7 @@
 
 from synth.guide.loop.check_text import check_text, correction_sentence, headline_sentence
 from synth.guide.loop.checking import Check, Correction, Verdict, check_arm
+from synth.guide.loop.hand_text import hand_text
 from synth.guide.loop.settings import Settings, best_settings
 from synth.guide.loop.swept_targets import swept_targets
 
@@ -14,6 +15,7 @@ __all__ = [
     "check_arm",
     "check_text",
     "correction_sentence",
+    "hand_text",
     "headline_sentence",
     "swept_targets",
 ]

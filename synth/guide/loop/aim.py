@@ -28,8 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from synth.arrays import FloatArray
-    from synth.guide.loop.hand import Hand
-    from synth.measurement import StandingArm
+    from synth.measurement import Hand, StandingArm
     from synth.robot import Arm
 
 _STEPS = 25

@@ -11,10 +11,9 @@ import numpy as np
 
 from synth.arrays import FloatArray, frozen, frozen_value
 from synth.guide.loop.aim import best_aims, size, towards
-from synth.guide.loop.hand import Hand
 from synth.guide.loop.outlook import Outlook, after_stiffening, outlook
 from synth.guide.loop.trying_on import value_of_trying
-from synth.measurement import joints_closest_to, joints_following, onto_vertical
+from synth.measurement import Hand, joints_closest_to, joints_following, onto_vertical
 from synth.robot import link_to_pose
 from synth.sentences import SentenceEnum
 

@@ -10,12 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import FloatArray, frozen, frozen_value
-from synth.guide.loop.hand import errors
-from synth.measurement import joints_following
+from synth.measurement import joints_following, random_errors
 
 if TYPE_CHECKING:
-    from synth.guide.loop.hand import Hand
-    from synth.measurement import ArmFit, StandingArm
+    from synth.measurement import ArmFit, Hand, StandingArm
 
 SAMPLES = 2000
 _SAMPLES_AFTER = 1000  # joints are sought anew for each of these
@@ -117,6 +115,6 @@ def after_stiffening(
     count: int = _SAMPLES_AFTER,
 ) -> Outlook:
     """Return what the arm as it stands will bring once the link is stiff and measured again."""
-    drift = errors(hand.drift, count, np.random.default_rng(2))
+    drift = random_errors(hand.drift, count, np.random.default_rng(2))
     arms = fit.samples(count, seed=3).moved(drift)
     return after(fit, arms, joints, targets, tolerances)

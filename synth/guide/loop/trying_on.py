@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.guide.loop.hand import errors
 from synth.guide.loop.outlook import after
+from synth.measurement import random_errors
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
-    from synth.guide.loop.hand import Hand
     from synth.guide.loop.outlook import Outlook
-    from synth.measurement import ArmFit
+    from synth.measurement import ArmFit, Hand
 
 _SAMPLES = 300
 
@@ -42,7 +41,7 @@ def after_correction(
     rng = np.random.default_rng(4)
     together = (math.hypot(rms[0], hand.drift[0]), math.hypot(rms[1], hand.drift[1]))
     arms = fit.arm.moved(move).displaced(
-        np.hstack([np.zeros((_SAMPLES, 5)), errors(together, _SAMPLES, rng)])
+        np.hstack([np.zeros((_SAMPLES, 5)), random_errors(together, _SAMPLES, rng)])
     )
     return after(fit, arms, joints, targets, tolerances)
 

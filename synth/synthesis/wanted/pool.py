@@ -10,7 +10,7 @@ from synth.arrays import frozen_value
 from synth.synthesis.shapes import Postures, Shapes, TargetsSeen, overlaps
 from synth.synthesis.wanted.forgiveness import misses_after_a_hand
 from synth.synthesis.wanted.margins import Margins
-from synth.synthesis.wanted.ranking import CALM, preferences, preferred
+from synth.synthesis.wanted.ranking import CALM, is_content, preferences, preferred
 from synth.synthesis.wanted.ways import MOST_MOTIONS
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ class Pool:
 
     Attributes:
         shapes: The shapes, of shape (N,).
-        table: Rows of `preferences`, shape (N, 6).
+        table: Rows of `preferences`, shape (N, 7).
         joints: Joint angles at the targets, shape (N, n, 2), rad.
     """
 
@@ -94,6 +94,11 @@ class Pool:
             np.concatenate([self.table, other.table]),
             np.concatenate([self.joints, other.joints]),
         ).sorted()
+
+    @property
+    def is_content(self) -> bool:
+        """Whether one of the shapes leaves nothing to wish for in ways, margins and swings."""
+        return any(map(is_content, self.table))
 
     @property
     def must_swing(self) -> bool:

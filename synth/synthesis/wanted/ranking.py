@@ -34,9 +34,9 @@ _SAME_SHAPE = 0.010
 # A joint that swings by no more than this between two targets is calm, rad.
 CALM = math.radians(120.0)
 # What less than so much apart, of `preferences`, is as good: neither noise nor a trifle of one decides over
-# the next. Ways; margins; swings, rad; m; rad; 1/m.
-STEPS = np.array([1.0, 0.1, math.radians(15.0), 0.5e-3, math.radians(10.0), 1e-9])
-_FIRST = 3  # columns of `preferences` that have an end: all ways, all margins, calm
+# the next. Ways; margins; m, as much as a hand is off; swings, rad; m; rad; 1/m.
+STEPS = np.array([1.0, 0.1, 10e-3, math.radians(15.0), 0.5e-3, math.radians(10.0), 1e-9])
+_WITH_END = [0, 1, 3]  # columns of `preferences` that have an end: all ways, all margins, calm
 _LESS_MARGIN = 0.5  # that an alternative may have, as a share of all of one kind
 _ROUNDING = 1e-9
 
@@ -49,25 +49,27 @@ def preferences(
     travel: ArrayLike,
     bend: ArrayLike,
 ) -> FloatArray:
-    """Return what should be small in a shape, what matters most first, shape (..., 6).
+    """Return what should be small in a shape, what matters most first, shape (..., 7).
 
     1. Ways lead from every target to the next.
     2. It keeps off the limits: of joints, length, bend, and of obstacles.
-    3. No joint swings by more than 120 deg between two targets.
-    4. It forgives the hand that bends it.
-    5. The joints travel little.
-    6. The link is bent gently.
+    3. It forgives the hand that bends it about as much as another does, to 10 mm.
+    4. No joint swings by more than 120 deg between two targets.
+    5. It forgives the hand more.
+    6. The joints travel little.
+    7. The link is bent gently.
 
     Args: as the fields of `Figures`; numbers, or arrays of many shapes.
     """
     excess = np.subtract(largest_swing, CALM)
-    restless = np.where(excess > 0.0, excess + STEPS[2], 0.0)  # never as good as calm
-    columns = (ways_missing, shortfall, restless, expected_worst_miss, travel, bend)
+    restless = np.where(excess > 0.0, excess + STEPS[3], 0.0)  # never as good as calm
+    miss = expected_worst_miss
+    columns = (ways_missing, shortfall, miss, restless, miss, travel, bend)
     return np.stack([np.asarray(column, dtype=np.float64) for column in columns], axis=-1)
 
 
 def preferred(table: FloatArray, steps: FloatArray = STEPS) -> NDArray[np.intp]:
-    """Return the order of shapes, the most wanted first, for rows of `preferences`, shape (N, 6).
+    """Return the order of shapes, the most wanted first, for rows of `preferences`, shape (N, 7).
 
     Column by column: of shapes that are alike so far, those within a step of the least are alike again, those
     within two come next.
@@ -93,7 +95,7 @@ def leaves_no_wish(figures: Figures | None) -> bool:
 
 def is_content(row: FloatArray) -> bool:
     """Whether a row of `preferences` leaves nothing to wish for in ways, margins and swings."""
-    return bool((row[:_FIRST] < STEPS[:_FIRST]).all())
+    return bool((row[_WITH_END] < STEPS[_WITH_END]).all())
 
 
 def _row(figures: Figures) -> FloatArray:

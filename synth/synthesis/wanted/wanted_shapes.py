@@ -25,7 +25,7 @@ from synth.synthesis.starts import (
 )
 from synth.synthesis.wanted.margins import drawn_in
 from synth.synthesis.wanted.pool import Pool, swings_of
-from synth.synthesis.wanted.ranking import CALM, STEPS, is_content
+from synth.synthesis.wanted.ranking import CALM, STEPS
 from synth.task import Objective
 from synth.watch import never
 
@@ -56,7 +56,7 @@ _VARIED = 50  # shapes that come of them
 _SIZES = (0.03, 0.1, 0.3, 0.6)  # of the bends, in units of the largest curvature
 _LENGTHS = 0.05  # m for a bend of that size, by which lengths change
 _PATIENCE = 3  # rounds that gain next to nothing, after which there is no other
-_COUNTS = 4  # first columns of `preferences`, in which that is asked
+_COUNTS = 5  # first columns of `preferences`, in which that is asked
 _BESIDE = 0.7  # of the tolerances, by which bent shapes are led beside the targets: else these were of no use
 _TIGHT = 1e-3  # m; targets of smaller tolerances are met exactly: nothing is gained by using those up
 _EXACTLY = 0.02  # of its tolerance a miss may take where targets are met exactly
@@ -97,13 +97,13 @@ def _searched(
 ) -> Pool:
     """Return the shapes that are wanted most, with limits drawn in.
 
-    While the best leaves ways, margins or calm to wish for, all is begun anew with joint 2 kept in a part of
+    While all shapes leave ways, margins or calm to wish for, all is begun anew with joint 2 kept in a part of
     its range, where no swing can be large: calm shapes are too rare to be met by chance. Where joint 1 has to
     swing in all shapes seen, none can be calm.
     """
     pool = _bred(task, narrow, known, _LED, _ITERATIONS, rng, stop)
     for calmer in _calmer(narrow):
-        if stop() or not len(pool.table) or is_content(pool.table[0]) or pool.must_swing:
+        if stop() or not len(pool.table) or pool.is_content or pool.must_swing:
             break
         pool = pool.joined(_bred(task, calmer, (), _LED_CALMER, _ITERATIONS_CALMER, rng, stop))
     if _is_tight(task) and len(pool.table):

@@ -41,7 +41,7 @@ class Hand:
         return math.hypot(self.share * shift, self.floor[0]), math.hypot(self.share * turn, self.floor[1])
 
 
-def errors(rms: tuple[float, float], count: int, rng: np.random.Generator) -> FloatArray:
+def random_errors(rms: tuple[float, float], count: int, rng: np.random.Generator) -> FloatArray:
     """Return errors of the pose of the link's end in any direction, shape (count, 6), m and rad."""
     scale = np.repeat(np.asarray(rms) / math.sqrt(3.0), 3)
     return np.asarray(rng.normal(size=(count, 6)) * scale)
