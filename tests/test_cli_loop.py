@@ -186,3 +186,23 @@ def test_there_is_nothing_to_learn_from_other_files(scene, tmp_path):
     assert wrong.exit_code == 2
     assert "share" in wrong.output
     assert "placement" in wrong.output
+
+
+def test_markers_without_names_are_told_by_where_they_must_be(scene, tmp_path):
+    rng = np.random.default_rng(1)
+    readings = seen(wanted(scene).moved(np.array([0.006, -0.005, 0.004, 0.0, 0.02, -0.04])), BARS, rng)
+    points = np.vstack([readings.positions, [[0.3, 0.7, 0.2]]])[rng.permutation(len(readings.names) + 1)]
+    unnamed, named = tmp_path / "points.csv", write_markers(tmp_path / "markers.csv", readings)
+    rows = "\n".join(",".join(f"{1e3 * x:.4f}" for x in point) for point in points)
+    unnamed.write_text(f"x_mm,y_mm,z_mm\n{rows}\n")
+    answers = [
+        invoked("check", file, scene[3], "--base-calibrated", "--json", *options)
+        for file, options in ((named, ()), (unnamed, ("--markers", BARS)))
+    ]
+    told = [json.loads(answer.stdout)["measured"]["axis2"]["point"] for answer in answers]
+    np.testing.assert_allclose(*told, atol=1e-5)
+    assert "passed over, being no markers of this arm: 1 points" in answers[1].stderr
+    wrong = invoked("check", unnamed, scene[3], "--markers", "P1 P3 P3 Q7")
+    assert wrong.exit_code == 2
+    assert "there is no marker 'Q7'" in wrong.output
+    assert "P3 is there twice" in wrong.output

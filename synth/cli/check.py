@@ -21,10 +21,9 @@ from synth.measurement import (
     Deed,
     StandingArm,
     aim_of_check,
-    examine,
+    examine_file,
     hand_error,
     load_hand,
-    load_readings,
     sigma_of,
 )
 from synth.solution_file import load_solved
@@ -50,6 +49,7 @@ def check_file(
     settings_within: float,
     after: Path | None,
     hand: Path | None,
+    markers: str,
 ) -> ExitCode:
     """Check a file of markers against a solution and say what to do.
 
@@ -67,6 +67,7 @@ def check_file(
         after: The file of the check before, whose correction was carried out, or after which the link was
             stiffened; None if the link was just placed.
         hand: The file of the hand that bends it; None: as published.
+        markers: Names of the markers that the arm bears, where the file does not say which is which.
 
     Returns:
         The exit code.
@@ -76,10 +77,9 @@ def check_file(
     joint1 = hold_posture(task, arm).joint1
     before = None if after is None else aim_of_check(after)
     bent_by = None if hand is None else load_hand(hand)
-    readings = load_readings(measured, task.robot, joint1)
-    wanted = StandingArm.of(arm, joint1)
-    examination = examine(
-        readings, wanted, task.robot, sigma_of(marker_error), base_calibrated=base_calibrated
+    wanted, sigma = StandingArm.of(arm, joint1), sigma_of(marker_error)
+    examination = examine_file(
+        measured, task.robot, wanted, sigma, base_calibrated=base_calibrated, markers=markers
     )
     if examination.fit is None:
         content, text = refusal_to_json(examination), f"{measured}: {examination.refusal}"
@@ -98,7 +98,7 @@ def check_file(
         content = check_to_json(check, examination, settings, told)
         text = check_text(check, settings, examination.rejected)
         code = ExitCode.DONE if check.verdict is Verdict.LOCK else ExitCode.NOT_MET
-    for warning in readings.warnings:
+    for warning in examination.used.warnings:
         say(warning, on_stderr=True)
     for path in [] if output is None else write_all({"check.json": json_bytes(content)}, output):
         say(f"wrote {path}", on_stderr=True)

@@ -50,6 +50,10 @@ if TYPE_CHECKING:
     "--hand", metavar="HAND", type=click.Path(path_type=Path),
     help="hand.json of who bends the link, by `synth learn`; a hand as published unless told.",
 )  # fmt: skip
+@click.option(
+    "--markers", metavar="NAMES", default="",
+    help='Markers that the arm bears, such as "P1 P2 P3 P4 P5", where the file does not say which is which.',
+)  # fmt: skip
 def check(
     measured: Path,
     solution: Path,
@@ -64,6 +68,7 @@ def check(
     settings_within: float,
     after: Path | None,
     hand: Path | None,
+    markers: str,
 ) -> None:
     """Say what to do with the link as it stands: lock it, correct it, or leave it at that.
 
@@ -85,7 +90,7 @@ def check(
             measured, solution, output,
             as_json=as_json, corrections=corrections_left, marker_error=marker_error / 1000.0,
             base_calibrated=base_calibrated, confidence=confidence, stiff=stiff,
-            settings_within=settings_within / 1000.0, after=after, hand=hand,
+            settings_within=settings_within / 1000.0, after=after, hand=hand, markers=markers,
         )  # fmt: skip
 
     sys.exit(run(command, math.inf))

@@ -3,9 +3,19 @@
 from synth.measurement.markers.arm_fit import ArmFit, fit_arm, marker_positions
 from synth.measurement.markers.calibration import Calibration, calibrate
 from synth.measurement.markers.examination import Examination, examine
-from synth.measurement.markers.marker_file import load_points, load_readings
+from synth.measurement.markers.examined_file import examine_file
+from synth.measurement.markers.marker_file import load_points, load_readings, load_unnamed
 from synth.measurement.markers.marker_rows import row_schema
-from synth.measurement.markers.markers import MARKER_ERROR, Marker, Place, Readings, marker_named, sigma_of
+from synth.measurement.markers.markers import (
+    MARKER_ERROR,
+    Marker,
+    Place,
+    Readings,
+    marker_named,
+    markers_named,
+    sigma_of,
+)
+from synth.measurement.markers.matching import Matched, matched
 from synth.measurement.markers.standing_arm import StandingArm, cross, onto_vertical, rotation_matrix
 from synth.measurement.markers.standing_joints import joints_closest_to, joints_following, left_to_joints
 
@@ -15,20 +25,25 @@ __all__ = [
     "Calibration",
     "Examination",
     "Marker",
+    "Matched",
     "Place",
     "Readings",
     "StandingArm",
     "calibrate",
     "cross",
     "examine",
+    "examine_file",
     "fit_arm",
     "joints_closest_to",
     "joints_following",
     "left_to_joints",
     "load_points",
     "load_readings",
+    "load_unnamed",
     "marker_named",
     "marker_positions",
+    "markers_named",
+    "matched",
     "onto_vertical",
     "rotation_matrix",
     "row_schema",

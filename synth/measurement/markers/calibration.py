@@ -170,13 +170,13 @@ def _fit(
     points: FloatArray, joints: FloatArray | None, arm: StandingArm, sigma: float
 ) -> tuple[StandingArm, FloatArray, float, FloatArray]:
     """Return the best arm near a start, its information, chi-square, and the misses of the points, m."""
-    near = joints_closest_to(arm, points) if joints is None else joints
     limits, arm = arm.limits, replace(arm, limits=_ANY_TURN)
     steps = np.vstack([np.zeros(UNKNOWNS), _SMALL * np.eye(UNKNOWNS), -_SMALL * np.eye(UNKNOWNS)])
     damping = 1e-3
     for _ in range(_STEPS):
-        rows, there = _misses(changed(arm, steps), points, joints, near)
-        near = there if joints is not None else there[0]
+        # Anew each time: where axes are nearly parallel another branch becomes the closest.
+        near = joints_closest_to(arm, points) if joints is None else joints
+        rows, _ = _misses(changed(arm, steps), points, joints, near)
         miss, slope = rows[0].ravel() / sigma, _slope(rows) / sigma
         information, gradient = slope @ slope.T, slope @ miss
         step = -np.linalg.solve(information + damping * np.eye(UNKNOWNS) / _SMALL, gradient)

@@ -66,7 +66,7 @@ def examine(
             for name in dict.fromkeys(readings.names[k] for k in readings.at(Place.LINK))]  # fmt: skip
     used = readings.take([k for k, marker in enumerate(readings.markers) if marker.place is not Place.LINK])
     refusal = (
-        _missing(used, base_calibrated=base_calibrated)
+        what_is_missing(used, base_calibrated=base_calibrated)
         or _wrong_scale(used, wanted, robot)
         or wrong_base(used)
     )
@@ -101,7 +101,13 @@ def examine(
     return Examination(fit, used, tuple(lost))
 
 
-def _missing(readings: Readings, *, base_calibrated: bool) -> str:
+def what_is_missing(readings: Readings, *, base_calibrated: bool) -> str:
+    """Return which axis the markers do not show, and what would show it; empty if they show both.
+
+    Args:
+        readings: Where markers were seen.
+        base_calibrated: Whether axis 1 is known to be the z axis of the frame.
+    """
     on_axis_2 = {readings.offsets[k] for k in readings.at(Place.AXIS_2)}
     if len(on_axis_2) < 2:
         return (
@@ -164,7 +170,7 @@ def _culprit(readings: Readings, fitted: _Fitter, tip_offset: float) -> tuple[st
     found = []
     for name in dict.fromkeys(readings.names):
         rest = readings.without(name)
-        if _missing(rest, base_calibrated=True):
+        if what_is_missing(rest, base_calibrated=True):
             continue
         fit = fitted(rest)
         if fit.excess > 0 and fit.plausibility > PLAUSIBLE and fit.shows_axes:

@@ -29,6 +29,15 @@ _FRAMES: dict[str, FloatArray] = {
     "one with y up, not z, and mirrored": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]]),
     "one with x up, not z": np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]),
 }
+_UP = {"x": "one with x up, not z", "y": "one with y up, not z"}
+
+
+def frames_with_z_up() -> dict[str, FloatArray]:
+    """Return turns of a frame whose z, y or x is up so that z is, by what is to be said of them."""
+    turns = {"": np.eye(3)}
+    for axis, words in _UP.items():
+        turns[f"{axis} is up in the file: its frame was turned so that z is up"] = _FRAMES[words]
+    return turns
 
 
 def upright(readings: Readings) -> Readings:
@@ -39,7 +48,7 @@ def upright(readings: Readings) -> Readings:
     found = _axis_1(readings)
     if found is None:
         return readings
-    for axis, words in (("x", "one with x up, not z"), ("y", "one with y up, not z")):
+    for axis, words in _UP.items():
         if found[1]["xyz".index(axis)] >= np.cos(_UPRIGHT):
             said = f"P1 to P2 points along {axis} of the file: its frame was turned so that z is up"
             turned = readings.positions @ _FRAMES[words].T

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from synth.robot import Robot
 
 _STRAIGHT = math.pi  # joint 2 where nothing is said of it
+_ONE_PLACE = 5e-3  # m; what is seen nearer than this to another is the same marker again
+_MOST_POINTS = 5_000  # of which places are made; of more, evenly along the list
 
 
 def load_readings(path: str | os.PathLike[str], robot: Robot, joint1: float) -> Readings:
@@ -53,6 +55,41 @@ def load_readings(path: str | os.PathLike[str], robot: Robot, joint1: float) -> 
     is_json = text.lstrip()[:1] == "{"
     rows = json_rows(text, file) if is_json else csv_rows(text, file)
     return _readings(rows, robot, joint1, file)
+
+
+def load_unnamed(path: str | os.PathLike[str]) -> FloatArray:
+    """Read where something was seen while the arm was at rest, whatever the file calls it.
+
+    Args:
+        path: The file: a capture, or x_mm,y_mm,z_mm. What is seen at one place in many frames is one point.
+
+    Returns:
+        Positions in the frame of the file, shape (n, 3), m.
+
+    Raises:
+        InputError: The file cannot be read, is wrong, or holds no points.
+    """
+    file = str(path)
+    content = content_of(Path(path), file)
+    if not isinstance(content, Capture):
+        return _places(load_points(path)[0])
+    mistakes: list[Mistake] = []
+    seen = [content.seen(track, file, mistakes) for track in content.tracks]
+    if mistakes or not any(map(len, seen)):
+        raise InputError(mistakes[:MISTAKES_AT_MOST] or [Mistake("holds no markers that were seen", file)])
+    return _places(np.array([np.median(points, axis=0) for points in seen if len(points)]))
+
+
+def _places(points: FloatArray) -> FloatArray:
+    """Return the means of points that are one, seen again, shape (n, 3), m."""
+    from scipy.cluster.hierarchy import fcluster, linkage  # type: ignore[import-untyped]  # noqa: PLC0415
+
+    if len(points) < 2:
+        return points
+    if len(points) > _MOST_POINTS:
+        points = points[:: -(-len(points) // _MOST_POINTS)]
+    of = fcluster(linkage(points), _ONE_PLACE, "distance")
+    return np.array([points[of == number].mean(axis=0) for number in range(1, of.max() + 1)])
 
 
 def load_points(path: str | os.PathLike[str]) -> tuple[FloatArray, FloatArray | None]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import FloatArray, frozen, frozen_value
+from synth.errors import InputError, Mistake
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -72,6 +73,26 @@ def marker_named(name: str, robot: Robot) -> Marker | None:
     if match := _ON_LINK.fullmatch(word):
         return Marker(word, Place.LINK, float(match[1]) / 1000.0)
     return None
+
+
+def markers_named(names: str, robot: Robot) -> tuple[Marker, ...]:
+    """Return the markers of names with spaces or commas between, such as "P1 P2 A2:-150".
+
+    Raises:
+        InputError: There is no such marker, or one is there twice.
+    """
+    words = names.replace(",", " ").split()
+    found = [(word, marker_named(word, robot)) for word in words]
+    mistakes = [
+        Mistake(f"there is no marker {w[:20]!r}; {MARKER_NAMES}", key="markers")
+        for w, m in found
+        if m is None
+    ]
+    twice = {word for word in words if words.count(word) > 1}
+    mistakes += [Mistake(f"{word[:20]} is there twice", key="markers") for word in sorted(twice)]
+    if mistakes:
+        raise InputError(mistakes)
+    return tuple(marker for _, marker in found if marker is not None)
 
 
 def sigma_of(mean_error: float) -> float:
