@@ -7,6 +7,8 @@ import pytest
 from planted import ROBOT, planted_task
 from standing import BARS, HOLD, SIGMA, seen
 
+from synth.geometry import Sphere
+from synth.guide.loop import checking
 from synth.guide.loop.aim import aimed, best_aims, towards
 from synth.guide.loop.check_text import check_text, way_words
 from synth.guide.loop.checking import Verdict, best_joints, check_arm
@@ -17,6 +19,7 @@ from synth.measurement import StandingArm, fit_arm, joints_closest_to, joints_fo
 from synth.measurement.hand import Hand, random_errors
 from synth.rounding import rounded_up
 from synth.synthesis import Design, solve, verify
+from synth.task import Obstacle
 
 HAND = Hand()
 OFF = np.array([0.006, -0.005, 0.004, 0.03, 0.02, -0.04])
@@ -212,3 +215,25 @@ def test_settings_keep_what_may_not_be_set(scene):
 )
 def test_a_way_in_words(way, words):
     assert way_words(np.array(way), 0.5e-3) == words
+
+
+def test_an_aim_that_is_blocked_is_left_for_a_nearer_one_or_a_design(scene, monkeypatch):
+    task, designs, wanted = scene
+    seen_there = fit(scene, wanted.moved(OFF), rng=np.random.default_rng(0))
+    free = check_arm(task, designs, seen_there).correction
+    answers = iter([False, True])
+    monkeypatch.setattr(checking, "is_clear", lambda _task, _arm: next(answers))
+    nearer = check_arm(task, designs, seen_there).correction
+    assert nearer.shape is not None
+    assert not np.allclose(nearer.move, free.move, atol=1e-5)
+    monkeypatch.setattr(checking, "is_clear", lambda _task, _arm: False)
+    at_design = check_arm(task, designs, seen_there, corrections=3).correction
+    assert at_design is None or at_design.shape is None
+
+
+def test_what_is_in_the_way_of_a_shape_is_seen(scene):
+    task, designs, _ = scene
+    arm = designs[0].arm
+    for where, clear in (((0.0, 0.0, 0.058), False), ((2.0, 2.0, 2.0), True)):  # P2, where every link begins
+        ball = Obstacle("ball", Sphere(np.array(where), 0.01))
+        assert checking.is_clear(replace(task, obstacles=(ball,)), arm) is clear

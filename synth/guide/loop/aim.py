@@ -6,13 +6,10 @@ a hand gets there:
 
     sum over targets of  |m|^2 + s^2 tr(Q) + r^2 |lever x Q|^2,
 
-m the miss that no joint takes up, Q the directions in which no joint moves P5, s and r the errors of
-position and
-direction: a floor, and a share of the displacement itself. The share draws the aim towards the present pose,
-    along
-every direction in which the task leaves the shape free; the floor draws it towards shapes whose rigid link
-points at
-the targets along the surface's normal, where a tilt of axis 2 does least.
+m the miss that no joint takes up, Q the directions in which no joint moves P5, s and r the errors of position
+and direction: a floor, and a share of the displacement itself. The share draws the aim towards the present
+pose, along every direction in which the task leaves the shape free; the floor draws it towards shapes whose
+rigid link points at the targets along the surface's normal, where a tilt of axis 2 does least.
 """
 
 from __future__ import annotations

@@ -5,6 +5,7 @@ Readings -> ArmFit -> Outlook -> Verdict, and the one correction that is worth m
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,12 +17,13 @@ from synth.guide.loop.trying_on import value_of_trying
 from synth.measurement import Hand, joints_closest_to, joints_following, onto_vertical
 from synth.robot import link_to_pose
 from synth.sentences import SentenceEnum
+from synth.synthesis import verify
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from synth.measurement import ArmFit, StandingArm
-    from synth.robot import LinkShape, Robot
+    from synth.robot import Arm, LinkShape, Robot
     from synth.synthesis import Design
     from synth.task import Task
 
@@ -103,8 +105,7 @@ def best_joints(arm: StandingArm, task: Task, planned: FloatArray) -> FloatArray
         arm: The arm.
         task: The task.
         planned: The joint angles of the design, shape (n, 2), rad. Only they are known to be clear of
-            obstacles
-            and of the arm itself; so another branch is taken only where it is much better.
+            obstacles and of the arm itself; so another branch is taken only where it is much better.
     """
     near = joints_following(arm, planned, task.positions_in_base)
     closest = joints_closest_to(arm, task.positions_in_base)
@@ -170,13 +171,13 @@ def _correction(
     """Return the correction that is worth most."""
     weights = task.tolerances.min() / task.tolerances
     targets, arms = task.positions_in_base, [design.arm for design in designs]
-    # What a correction leaves is corrected by the next one. Where the link cannot take what is best, a
-    # nearer aim.
+    # What a correction leaves is corrected by the next one. Where the link cannot take what is best, or
+    # something is in its way, a nearer aim.
     for share in (hand.share**corrections, hand.share, 1.0):
         _, move, there = best_aims(fit.arm, arms, joints, targets, weights, hand, share)[0]
         aim = fit.arm.moved(move)
         shape = link_at(task.robot, aim, arms[0].shape)
-        if shape is not None:
+        if shape is not None and is_clear(task, replace(arms[0], shape=shape)):
             break
     else:
         move = min((towards(fit.arm, arm) for arm in arms), key=size)
@@ -184,6 +185,16 @@ def _correction(
         there, shape = joints_closest_to(aim, targets), None
     value, first = value_of_trying(fit, move, there, targets, task.tolerances, hand, corrections)
     return Correction(move[:3], move[3:], aim, shape, there, first, value)
+
+
+def is_clear(task: Task, arm: Arm) -> bool:
+    """Whether an arm can stand at the targets clear of obstacles, floor and itself.
+
+    Args:
+        task: The task.
+        arm: The robot in a shape.
+    """
+    return not (task.solids or task.floor_in_base is not None) or verify(task, arm).possible
 
 
 def link_at(robot: Robot, arm: StandingArm, current: LinkShape) -> LinkShape | None:
