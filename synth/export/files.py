@@ -14,6 +14,7 @@ from synth.arrays import frozen_value
 from synth.checks import refuse_unless
 from synth.errors import InputError, Mistake, SynthError, TimeLimitError, in_a_line
 from synth.export.markers import markers_csv
+from synth.export.page import draw_page
 from synth.export.planners import KINDS, kinds_of, planner_files
 from synth.export.sheet import draw_sheet
 from synth.export.solution_json import solution_to_json
@@ -24,8 +25,14 @@ from synth.watch import never
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
+    from synth.guide import Guide
+
 _MOST_INDENTED = 1000  # targets in a file that is laid out for the eye
-SOLUTION_FILES = ("solution.json", "guide.pdf", "markers.csv")
+SOLUTION_FILES = ("solution.json", "guide.pdf", "guide.html", "markers.csv")
+_DRAWN: Mapping[str, Callable[[Solution, Guide | None], bytes]] = {
+    "guide.pdf": draw_sheet,
+    "guide.html": draw_page,
+}
 
 
 @frozen_value
@@ -87,11 +94,12 @@ def write_what_can_be(
         "markers.csv": markers_csv(guide).encode(),
     }
     failed: dict[str, BaseException] = {}
-    try:
-        _see_the_time(is_up)
-        files["guide.pdf"] = draw_sheet(solution, guide)
-    except (Exception, KeyboardInterrupt) as error:  # noqa: BLE001 - the answer is not lost with its drawing
-        failed["guide.pdf"] = error
+    for name, draw in _DRAWN.items():
+        try:
+            _see_the_time(is_up)
+            files[name] = draw(solution, guide)
+        except (Exception, KeyboardInterrupt) as error:  # noqa: BLE001 - the answer is not lost with a drawing
+            failed[name] = error
     files = {name: files[name] for name in SOLUTION_FILES if name in files}
     return Written(tuple(write_all(files, directory, without=failed)), failed)
 

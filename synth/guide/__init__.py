@@ -17,7 +17,7 @@ from synth.guide.loop import (
 from synth.guide.markers import LINK_END, MARKERS, Guide, Placement, make_guide
 from synth.guide.posture import HoldPosture, hold_posture
 from synth.guide.sensitivity import ShapeTolerance
-from synth.guide.text import guide_text, solution_text
+from synth.guide.text import guide_text, points_sentence, solution_text
 
 __all__ = [
     "LINK_END",
@@ -41,6 +41,7 @@ __all__ = [
     "hold_posture",
     "instructions",
     "make_guide",
+    "points_sentence",
     "solution_text",
     "swept_targets",
 ]

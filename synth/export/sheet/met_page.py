@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 from synth.export.sheet.page import MARGIN, WIDTH
 from synth.export.sheet.robot_drawing import draw_robot
 from synth.export.sheet.target_table import target_table
+from synth.export.sheet.told import headline_told
 from synth.export.sheet.typesetting import shortened
 from synth.guide import base_sentence, instructions
-from synth.synthesis import ending
 
 if TYPE_CHECKING:
     from synth.export.sheet.page import Page
@@ -34,7 +34,7 @@ _ROBOT = 30.0  # side of the drawing that says what the names mean
 def fill_met(page: Page, solution: Solution, guide: Guide) -> float:
     """Write all but the drawings; return how far down it goes, mm."""
     missing = any(not way.found for way in guide.ways)
-    told, weight = f"Found: {ending(solution.status, solution.designs)}.", "bold" if missing else "normal"
+    told, weight = headline_told(solution), "bold" if missing else "normal"
     room = WIDTH - 2 * MARGIN - _ROBOT - 3.0
     page.paragraph(MARGIN, 25.5, told, room, size=10.0, most=1, weight=weight)
     kind = f"Kind of shape: {guide.arm.category_distances.describe()}."

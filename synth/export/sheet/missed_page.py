@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from synth.export.sheet.page import MARGIN, WIDTH
 from synth.export.sheet.target_table import target_table
+from synth.export.sheet.told import headline_told, help_in_few, why_told
 from synth.export.sheet.typesetting import width
 from synth.sentences import BULLET
-from synth.synthesis import Status, help_told, proof_sentence, reasons_told
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,15 +22,13 @@ _BODY = 37.0  # where the reasons begin
 _BANNER_SIZE = 12.0  # pt, at most
 _PITCH = 3.6
 _MOST_LINES = 3  # of one reason
-_MOST_REASONS = 5  # as on the terminal
-_MOST_RELEASES = 5
 
 
 def fill_missed(page: Page, solution: Solution) -> float:
     """Write all but the drawings; return how far down it goes, mm."""
     _banner(page, solution)
-    y = _list(page, _BODY, "Why", _why(solution))
-    y = _list(page, y, "What would help", _help(solution))
+    y = _list(page, _BODY, "Why", why_told(solution))
+    y = _list(page, y, "What would help", help_in_few(solution))
     y = target_table(page, MARGIN, y + 1.0, solution)
     if not solution.designs:
         page.text(MARGIN, y + 1.0, "There is no shape to bend the link to.", 9.5, weight="bold")
@@ -40,23 +37,10 @@ def fill_missed(page: Page, solution: Solution) -> float:
 
 
 def _banner(page: Page, solution: Solution) -> None:
-    word = "IMPOSSIBLE" if solution.status is Status.PROVEN_IMPOSSIBLE else "NOT FOUND"
-    told = f"{word}: {solution.status.sentence}"
+    told = headline_told(solution)
     page.band(MARGIN, _BANNER, WIDTH - 2 * MARGIN, 9.0, "black")
     size = _BANNER_SIZE * min(1.0, (WIDTH - 2 * MARGIN - 6.0) / width(told, _BANNER_SIZE, bold=True))
     page.text(MARGIN + 3.0, _BANNER + 6.2, told, size, color="white", weight="bold")
-
-
-def _why(solution: Solution) -> list[str]:
-    told = reasons_told(solution, _MOST_REASONS)
-    proof = proof_sentence(solution)
-    return [*told, proof] if proof else told
-
-
-def _help(solution: Solution) -> list[str]:
-    """Return the releases, of many the first, and what else is to be said."""
-    few = replace(solution, releases=solution.releases[:_MOST_RELEASES])
-    return help_told(few)
 
 
 def _list(page: Page, y: float, heading: str, lines: Sequence[str]) -> float:
