@@ -1,4 +1,4 @@
-"""The commands that serve other programs: `synth schema` and `synth export`."""
+"""The commands about files that are there already: `synth schema`, `synth export` and `synth guide`."""
 
 from __future__ import annotations
 
@@ -87,4 +87,39 @@ def export(solution: Path, output: Path, *, shape: int, **kinds: bool) -> None:
     sys.exit(run(command, math.inf))
 
 
-COMMANDS = (export, schema)
+@click.command()
+@click.argument("solution", metavar="SOLUTION.json", type=click.Path(path_type=Path))
+@click.option(
+    "-o", "--output", metavar="DIR", type=click.Path(path_type=Path),
+    help="Write the page into this directory.  [default: that of the solution]",
+)  # fmt: skip
+@click.option(
+    "--shape", metavar="K", type=click.IntRange(min=1), default=1,
+    help="Begin with the K-th shape of the file.  [default: 1, the one it tells of first]",
+)  # fmt: skip
+def guide(solution: Path, output: Path | None, *, shape: int) -> None:
+    """Write guide.html, the guide as a page for a browser, from a solution.
+
+    SOLUTION.json is the file of a solution; it is verified again. The page is one file, and needs no network.
+
+    \b
+    Exit codes:
+      0  the page is written
+      2  wrong input, and nothing is written
+    """
+    from synth.cli.session import Session, run
+
+    def command(_session: Session) -> ExitCode:
+        from synth.cli.say import say
+        from synth.export import write_page
+        from synth.solution_file import load_solved, load_solution
+        from synth.synthesis import showing
+
+        for path in write_page(solved, output or solution.parent):
+            say(f"wrote {path}", on_stderr=True)
+        return ExitCode.DONE
+
+    sys.exit(run(command, math.inf))
+
+
+COMMANDS = (export, guide, schema)

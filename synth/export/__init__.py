@@ -1,4 +1,4 @@
-"""Solutions as files: for programs (JSON), for spreadsheets (CSV), and to be held in a hand (PDF)."""
+"""Solutions as files: for programs (JSON), for spreadsheets (CSV), to be held in a hand (PDF), to look around in (HTML)."""
 
 from synth.export.calibration_json import calibration_to_json
 from synth.export.check_json import check_to_json, refusal_to_json
@@ -9,6 +9,7 @@ from synth.export.files import (
     prepare_directory,
     write_all,
     write_files,
+    write_page,
     write_planner_files,
     write_what_can_be,
 )
@@ -22,6 +23,7 @@ from synth.export.inspection import (
 )
 from synth.export.json_data import plain
 from synth.export.markers import markers_csv
+from synth.export.page import page_content
 from synth.export.planners import casadi_kinematics, kinematics_c_code
 from synth.export.sheet import draw_robot, draw_sheet
 from synth.export.solution_json import solution_to_json
@@ -43,6 +45,7 @@ __all__ = [
     "json_text",
     "kinematics_c_code",
     "markers_csv",
+    "page_content",
     "plain",
     "prepare_directory",
     "refusal_to_json",
@@ -51,6 +54,7 @@ __all__ = [
     "write_all",
     "write_files",
     "write_inspections",
+    "write_page",
     "write_planner_files",
     "write_what_can_be",
 ]

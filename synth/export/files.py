@@ -55,7 +55,7 @@ class Written:
 
 
 def write_files(solution: Solution, directory: str | os.PathLike[str]) -> list[Path]:
-    """Write `solution.json`, `guide.pdf` and `markers.csv`, the same bytes for the same solution.
+    """Write `solution.json`, `guide.pdf`, `guide.html` and `markers.csv`; the same bytes for the same solution.
 
     Args:
         solution: What a synthesis found, whatever its status.
@@ -65,8 +65,8 @@ def write_files(solution: Solution, directory: str | os.PathLike[str]) -> list[P
         The paths of the files, in this order.
 
     Raises:
-        SynthError: They cannot be written. Files of an earlier run are then as they were. Or the sheet could
-            not be drawn: then the others are written, and there is no `guide.pdf`.
+        SynthError: They cannot be written. Files of an earlier run are then as they were. Or sheet or page
+            could not be drawn: then the others are written, and there is none of that name.
     """
     written = write_what_can_be(solution, directory)
     if written.failed:
@@ -77,7 +77,7 @@ def write_files(solution: Solution, directory: str | os.PathLike[str]) -> list[P
 def write_what_can_be(
     solution: Solution, directory: str | os.PathLike[str], *, is_up: Callable[[], bool] = never
 ) -> Written:
-    """Write the files of a solution, without the sheet if it cannot be drawn, whatever the reason.
+    """Write the files of a solution, without sheet or page if it cannot be drawn, whatever the reason.
 
     Args:
         solution: What a synthesis found, whatever its status.
@@ -106,7 +106,22 @@ def write_what_can_be(
 
 def _see_the_time(is_up: Callable[[], bool]) -> None:
     if is_up():
-        raise TimeLimitError("the time limit was over before the sheet was begun")
+        raise TimeLimitError("the time limit was over before it was begun")
+
+
+def write_page(solution: Solution, directory: str | os.PathLike[str]) -> list[Path]:
+    """Write `guide.html` alone.
+
+    Args:
+        solution: What a synthesis found, whatever its status.
+        directory: Where to; it is made if it is not there. A file of this name is replaced.
+
+    Raises:
+        SynthError: It cannot be written. A file of an earlier run is then as it was.
+    """
+    refuse_unless("solution", solution, Solution)
+    guide = make_guide(solution.task, solution.designs[0]) if solution.designs else None
+    return write_all({"guide.html": draw_page(solution, guide)}, directory)
 
 
 def write_planner_files(

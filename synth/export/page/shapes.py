@@ -96,14 +96,15 @@ def _figures(design: Design) -> dict[str, str]:
         "link length, mm": f"{1e3 * arm.shape.length:.1f}",
         "tightest bend, radius, mm": rounded_down(arm.shape.min_bend_radius),
         "bend in all, °": f"{math.degrees(arm.shape.total_bend):.0f}",
-        "d35, d45, mm": f"{1e3 * arm.d35:.1f}, {1e3 * arm.d45:.1f}",
     }
+    if not arm.robot.rigid_link.is_fixed:
+        told["rigid link, d35 and d45, mm"] = f"{1e3 * arm.d35:.1f}, {1e3 * arm.d45:.1f}"
     if figures is None or not design.verification.found:
         return told
     hand, margins = figures.forgiveness, figures.margins
     told |= {
         "by a hand, worst miss expected, mm": rounded_up(hand.expected_worst_miss),
-        "by a hand, all within at first try, %": rounded_down(hand.chance, Unit.PERCENT, 0),
+        "by a hand, all within at the first try": hand.chance_told,
         "largest swing of a joint, °": rounded_up(figures.largest_swing, Unit.DEG, 0),
         "joint 1 off its limits, °": rounded_down(margins.joint1, Unit.DEG, 0),
         "joint 2 off its limits, °": rounded_down(margins.joint2, Unit.DEG, 0),

@@ -58,11 +58,15 @@ class Forgiveness:
         )
         miss = f"expect a worst miss of {rounded_up(self.expected_worst_miss)} mm"
         rest = f"joints recomputed from the measured arm; {miss}. So measure, and correct until it is right."
+        begin = "No hand holds this at the first try:" if self.chance < _NO_HAND else "At the first try"
+        return f"{begin} {hand} meets every target in {self.chance_told} of tries, {rest}"
+
+    @property
+    def chance_told(self) -> str:
+        """The chance in percent, rounded down; of so many tries neither 0 nor 100 is proven."""
         if self.chance < _NO_HAND:
-            never = "No hand holds this at the first try"
-            return f"{never}: {hand} meets every target in less than 2 % of tries, {rest}"
-        share = min(int(rounded_down(self.chance, Unit.PERCENT, 0)), 99)
-        return f"At the first try {hand} meets every target in about {share} % of tries, {rest}"
+            return "less than 2 %"
+        return f"about {min(int(rounded_down(self.chance, Unit.PERCENT, 0)), 99)} %"
 
 
 @cache

@@ -38,7 +38,7 @@ const SIDES = [[10, -8], [-10, -8], [10, 9], [-10, 9], [0, -18], [0, 18], [18, 0
 
 /** Put names beside their points, each where it covers no other; places in shares of the view, so that it prints. */
 function placeLabels(box, view, points) {
-  const width = box.clientWidth, height = box.clientHeight, projection = view.camera.projection(), taken = [];
+  const { width, height } = view.box(), projection = view.camera.projection(), taken = [];
   const made = [];
   for (const point of points) {
     const { x, y, before } = projected(projection, point.at);

@@ -12,11 +12,11 @@ const state = {
   pixels: Math.min(window.devicePixelRatio || 1, 2),
 };
 const view = makeView(canvas, content, state);
-view.box = () => ({ width: canvas.clientWidth, height: canvas.clientHeight });
 view.drawn = () => placeLabels(labels, view, namedPoints(content, state, view.size));
 if (!view.drawing) document.getElementById("view").append(element("p", { className: "nothing", text: "This browser has no WebGL 2 to draw with; all else is beside." }));
 
 let wanted = 0, playing = 0, joints = null;
+/** Draw anew with the next picture of the screen; while it is printed nothing moves. */
 function redraw() {
   wanted ||= requestAnimationFrame(() => {
     wanted = 0;
@@ -79,17 +79,20 @@ listenToPointer(canvas, hover, content, state, view, (angles) => act.joints(angl
 dark.addEventListener("change", () => { setTheme(dark.matches ? "dark" : "light"); fill(); });
 new ResizeObserver(redraw).observe(canvas);
 
-// On paper all is light, and drawn finer than on the screen.
-let before = null;
+// On paper all is light, and a picture of its own size stands for the view.
 window.addEventListener("beforeprint", () => {
-  before = { theme: state.theme, pixels: state.pixels };
+  if (!view.drawing) return;
+  const { theme, pixels } = state, { box } = view;
   setTheme("light");
-  state.pixels = 2;
+  Object.assign(view, { box: () => ({ width: 780, height: 520 }) });
+  state.pixels = 2.5;
   view.redraw();
-});
-window.addEventListener("afterprint", () => {
-  setTheme(before.theme);
-  state.pixels = before.pixels;
-  redraw();
+  document.getElementById("picture").src = canvas.toDataURL("image/png");
+  window.addEventListener("afterprint", () => {
+    Object.assign(view, { box });
+    state.pixels = pixels;
+    setTheme(theme);
+    redraw();
+  }, { once: true });
 });
 fill();

@@ -20,7 +20,7 @@ function choice(names, chosen, choose) {
 function shapesOf(content, state, act) {
   if (content.shapes.length < 2) return "";
   const names = content.shapes.map((shape) => `${shape.number}`);
-  return element("section", { className: "screen" }, element("h2", { text: "Shape" }),
+  return element("section", { className: "screen" }, element("h2", { text: content.found ? "Shape" : "Nearest shapes found" }),
     element("div", { className: "chips row" }, ...choice(names, state.shape, act.shape)),
     element("p", { className: "small", text: `${content.shapes[state.shape].category}; all of them are compared below` }));
 }

@@ -68,7 +68,7 @@ function makeView(canvas, content, state) {
 
   function redraw() {
     if (view.loaded !== state.shape) load();
-    const width = Math.round(canvas.clientWidth * state.pixels), height = Math.round(canvas.clientHeight * state.pixels);
+    const { width: wide, height: high } = view.box(), width = Math.round(wide * state.pixels), height = Math.round(high * state.pixels);
     if (width && height && (canvas.width !== width || canvas.height !== height)) Object.assign(canvas, { width, height });
     camera.aspect = canvas.width / canvas.height;
     const colours = COLOURS[state.theme], shape = content.shapes[state.shape], eye = camera.eye();
@@ -122,7 +122,7 @@ function makeView(canvas, content, state) {
       gl.enable(gl.CULL_FACE);
       for (const side of [gl.FRONT, gl.BACK]) {
         gl.cullFace(side);
-        solid(obstacles, colours.obstacle, { alpha: 0.34, flatness: 0.2 });
+        solid(obstacles, colours.obstacle, { alpha: 0.24, flatness: 0.2 });
       }
       gl.disable(gl.CULL_FACE);
     }
@@ -142,7 +142,9 @@ function makeView(canvas, content, state) {
     gl.disable(gl.STENCIL_TEST);
   }
 
-  view = { camera, drawing, redraw, mark, size, workspace: null, loaded: null, more: [], drawn() {} };
+  view = { camera, drawing, redraw, mark, size, workspace: null, loaded: null, more: [], drawn() {},
+    box: () => ({ width: canvas.clientWidth, height: canvas.clientHeight }),
+  };
   return view;
 }
 
