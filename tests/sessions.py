@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 ONE_TARGET = Path(__file__).parents[1] / "problems" / "one-target" / "task.yaml"
-NAMES = {"solution.json", "guide.pdf", "markers.csv"}
+NAMES = {"solution.json", "guide.pdf", "guide.html", "markers.csv"}
 
 
 def status(directory):

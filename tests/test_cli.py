@@ -53,7 +53,7 @@ def test_a_found_task_exits_with_0_and_writes_its_files(easy, tmp_path):
     assert answer.returncode == 0
     assert "every target is within its tolerance" in answer.stdout
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
-        "solution.json", "guide.pdf", "markers.csv"
+        "solution.json", "guide.pdf", "guide.html", "markers.csv"
     }  # fmt: skip
     assert json.loads((tmp_path / "out" / "solution.json").read_text())["status"] == "found"
 

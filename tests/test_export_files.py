@@ -15,7 +15,7 @@ from sheets import GUIDE, NOTHING, SOLUTION
 from synth.errors import SynthError
 from synth.export import markers_csv, prepare_directory, write_files
 
-NAMES = ["solution.json", "guide.pdf", "markers.csv"]
+NAMES = ["solution.json", "guide.pdf", "guide.html", "markers.csv"]
 
 
 def test_the_csv_holds_the_points_at_the_angle_to_hold():

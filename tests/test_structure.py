@@ -16,7 +16,9 @@ ROOMS = {
     "export.inspection": {"export", "export.sheet", "measurement"},
     "export.planners": {"geometry", "robot", "synthesis", "task", "trajectories"},
     "trajectories": {"synthesis"},
+    "export.page": {"export.sheet", "geometry", "guide", "robot", "synthesis", "task"},
     "export": {
+        "export.page",
         "export.planners",
         "export.sheet",
         "geometry",

@@ -53,8 +53,8 @@ def main() -> None:
 )
 @click.option(
     "-o", "--output", metavar="DIR", type=click.Path(path_type=Path),
-    help="Write solution.json, guide.pdf, guide.html and markers.csv into this directory; of many tasks, into "
-    "one for each, with all solutions in sweep.sqlite.",
+    help="Write solution.json, guide.pdf, guide.html and markers.csv into this directory; of many tasks, "
+    "into one for each, with all solutions in sweep.sqlite.",
 )  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Print the solution as JSON and nothing else.")
 @click.option("--all", "show_all", is_flag=True, help="Show the alternative shapes, too.")

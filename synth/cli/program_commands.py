@@ -112,9 +112,12 @@ def guide(solution: Path, output: Path | None, *, shape: int) -> None:
     def command(_session: Session) -> ExitCode:
         from synth.cli.say import say
         from synth.export import write_page
-        from synth.solution_file import load_solved, load_solution
+        from synth.solution_file import load_solution
         from synth.synthesis import showing
 
+        solved = load_solution(solution)
+        if shape != 1:
+            solved = showing(solved, shape)
         for path in write_page(solved, output or solution.parent):
             say(f"wrote {path}", on_stderr=True)
         return ExitCode.DONE

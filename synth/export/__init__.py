@@ -1,4 +1,4 @@
-"""Solutions as files: for programs (JSON), for spreadsheets (CSV), to be held in a hand (PDF), to look around in (HTML)."""
+"""Solutions as files: for programs (JSON) and spreadsheets (CSV), to hold (PDF), to look around in (HTML)."""
 
 from synth.export.calibration_json import calibration_to_json
 from synth.export.check_json import check_to_json, refusal_to_json

@@ -55,7 +55,7 @@ class Written:
 
 
 def write_files(solution: Solution, directory: str | os.PathLike[str]) -> list[Path]:
-    """Write `solution.json`, `guide.pdf`, `guide.html` and `markers.csv`; the same bytes for the same solution.
+    """Write all files of a solution, `SOLUTION_FILES`; the same bytes for the same solution.
 
     Args:
         solution: What a synthesis found, whatever its status.

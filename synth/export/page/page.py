@@ -13,6 +13,8 @@ from synth.export.page.content import page_content
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from numpy.typing import NDArray
+
     from synth.guide import Guide
     from synth.synthesis import Solution
 
@@ -49,11 +51,17 @@ def draw_page(solution: Solution, guide: Guide | None) -> bytes:
 def page_of(content: Mapping[str, Any]) -> bytes:
     """Return the page that shows some content, as `page_content` returns it."""
     # In a script nothing but "<" can end it, or begin a comment.
-    data = json.dumps(content, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+    data = json.dumps(content, default=_listed, allow_nan=False, separators=(",", ":"))
+    data = data.replace("<", "\\u003c")
     filled = _template()
     for place, text in (("DATA", data), ("TITLE", html.escape(content["name"]))):  # a name may hold a place
         filled = filled.replace(f"{{{{{place}}}}}", text, 1)
     return filled.encode("utf-8", "backslashreplace")
+
+
+def _listed(value: NDArray[Any]) -> object:
+    """Return an array as JSON can hold it."""
+    return value.tolist()
 
 
 @cache

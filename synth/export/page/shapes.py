@@ -1,4 +1,4 @@
-"""The shapes, as two turns about axes and what is fixed to them, and the figures by which they are compared."""
+"""The shapes: two turns about axes and what is fixed to them; and the figures to compare them by."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ def shape_content(solution: Solution, number: int, design: Design, drawn: NDArra
         "within": [check.within_tolerance[index] for index in drawn.tolist()],
         "joints": check.joints[drawn],
         "missed_by": [rounded_up(miss, digits=3) for miss in check.misses[drawn].tolist()],
-        "clear": [_clear(value) for value in check.clearances[drawn].tolist()] if solution.task.solids else None,
-        "ways": [
-            {"told": way.describe().replace(" deg", "°"), "joints": way.joints} for way in design.ways
-        ]
+        "clear": [_clear(value) for value in check.clearances[drawn].tolist()]
+        if solution.task.solids
+        else None,
+        "ways": [{"told": way.describe().replace(" deg", "°"), "joints": way.joints} for way in design.ways]
         if found
         else [],
     }
@@ -54,10 +54,10 @@ def _clear(clearance: float) -> str | None:
 
 
 def _arm(arm: Arm, *, with_markers: bool) -> dict[str, Any]:
-    """Return an arm: with T a rigid transform and R a turn, a point of the rigid link is at T1 Rz T2 Rx point.
+    """Return an arm: a point of the rigid link is at T1 Rz(theta1) T2 Rx(theta2) point.
 
-    The pose of joint 1, T1, is the base's in the task frame, that of joint 2, T2, the frame of the circle of P5
-    in the base frame; x is axis 2.
+    The pose T1 of joint 1 is the base's in the task frame; T2, of joint 2, is that of the circle of P5 in the
+    base frame, with axis 2 as its x axis.
     """
     kinematics, body = arm.kinematics, ArmBody(arm)
     limits = Workspace.within_limits(arm).limits
