@@ -31,7 +31,7 @@ def page_content(solution: Solution, guide: Guide | None) -> dict[str, Any]:
         nothing that a person could bend a link to: no instructions, no markers.
     """
     refuse_unless("solution", solution, Solution)
-    task, met = solution.task, guide is not None and guide.met
+    task, designs, met = solution.task, solution.designs, guide is not None and guide.met
     listed, targets = targets_content(solution)
     floor = task.floor_height
     return {
@@ -50,9 +50,7 @@ def page_content(solution: Solution, guide: Guide | None) -> dict[str, Any]:
         "obstacles": [obstacle_content(obstacle) for obstacle in task.obstacles],
         "shapes": [
             shape_content(solution, number, design, listed)
-            for number, design in zip(
-                solution.shape_numbers, solution.designs, strict=False
-            )  # no number is of none
+            for number, design in zip(solution.shape_numbers[: len(designs)], designs, strict=True)
         ],
         "compared": compared(solution),
         "instructions": _instructions(guide) if guide is not None and guide.met else None,

@@ -30,5 +30,5 @@ def why_told(solution: Solution) -> list[str]:
 
 
 def help_in_few(solution: Solution) -> list[str]:
-    """Return what would help a task that is missed, of many releases the first, and more that is to be said."""
+    """Return what would help a task that is missed, of many releases the first; and the notes."""
     return help_told(replace(solution, releases=solution.releases[:_MOST_RELEASES]))
