@@ -10,7 +10,8 @@ from package_files import FILES, FOLDERS, MODULES, PACKAGE, TESTS
 # Each folder is a room, and its `__init__` the door; beside it stand the rooms it may enter. What lies in no
 # room everything may use.
 ROOMS = {
-    "cli": {"export", "guide", "measurement", "solution_file", "sweep", "synthesis", "task"},
+    "cli": {"export", "guide", "live", "measurement", "solution_file", "sweep", "synthesis", "task"},
+    "live": {"export", "guide", "measurement", "robot", "synthesis"},
     "sweep": {"export", "solution_file", "synthesis", "task"},
     "solution_file": {"files", "geometry", "paths", "robot", "surfaces", "synthesis", "task"},
     "export.inspection": {"export", "export.sheet", "measurement"},

@@ -10,7 +10,44 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from synth.cli.exit_codes import ExitCode
+
+
+# What `synth check` and the live guide ask alike, in the order of the help.
+_HOW_TO_CHECK = (
+    click.option(
+        "--corrections-left", type=click.IntRange(min=0), default=3, show_default=True,
+        help="How many corrections you are still willing to make.",
+    ),
+    click.option(
+        "--marker-error", metavar="MM", type=click.FloatRange(0.001, 100.0), default=0.455, show_default=True,
+        help="Mean error of a marker in space.",
+    ),
+    click.option(
+        "--base-calibrated", is_flag=True,
+        help="Axis 1 is the z axis of the frame, found by turning joint 1; else its markers show it.",
+    ),
+    click.option(
+        "--confidence", type=click.FloatRange(0.5, 0.999), default=0.95, show_default=True,
+        help="Chance that all targets are within tolerance from which on to lock.",
+    ),
+    click.option(
+        "--stiff", is_flag=True, help="The link was stiff when it was measured: it will move no more.",
+    ),
+    click.option(
+        "--hand", metavar="HAND", type=click.Path(path_type=Path),
+        help="hand.json of who bends the link, by `synth learn`; a hand as published unless told.",
+    ),
+)  # fmt: skip
+
+
+def how_to_check(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command the options that say how markers are checked."""
+    for option in reversed(_HOW_TO_CHECK):
+        command = option(command)
+    return command
 
 
 @click.command()
@@ -21,23 +58,7 @@ if TYPE_CHECKING:
     help="Write check.json into this directory.",
 )  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Print the check as JSON and nothing else.")
-@click.option(
-    "--corrections-left", type=click.IntRange(min=0), default=3, show_default=True,
-    help="How many corrections you are still willing to make.",
-)  # fmt: skip
-@click.option(
-    "--marker-error", metavar="MM", type=click.FloatRange(0.001, 100.0), default=0.455, show_default=True,
-    help="Mean error of a marker in space.",
-)  # fmt: skip
-@click.option(
-    "--base-calibrated", is_flag=True,
-    help="Axis 1 is the z axis of the frame, found by turning joint 1; else its markers show it.",
-)  # fmt: skip
-@click.option(
-    "--confidence", type=click.FloatRange(0.5, 0.999), default=0.95, show_default=True,
-    help="Chance that all targets are within tolerance from which on to lock.",
-)  # fmt: skip
-@click.option("--stiff", is_flag=True, help="The link was stiff when it was measured: it will move no more.")
+@how_to_check
 @click.option(
     "--settings", "settings_within", metavar="MM", type=click.FloatRange(0.0, 1000.0), default=0.0,
     help="Say how to set base and tool after locking, each within so many millimetres.",
@@ -45,10 +66,6 @@ if TYPE_CHECKING:
 @click.option(
     "--after", metavar="CHECK", type=click.Path(path_type=Path),
     help="check.json of the check before, after which the link was corrected as told, or stiffened.",
-)  # fmt: skip
-@click.option(
-    "--hand", metavar="HAND", type=click.Path(path_type=Path),
-    help="hand.json of who bends the link, by `synth learn`; a hand as published unless told.",
 )  # fmt: skip
 @click.option(
     "--markers", metavar="NAMES", default="",

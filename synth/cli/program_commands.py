@@ -1,14 +1,16 @@
-"""The commands about files that are there already: `synth schema`, `synth export` and `synth guide`."""
+"""The commands about a solution that is there: `synth schema`, `synth export` and `synth guide`."""
 
 from __future__ import annotations
 
 import math
 import sys
 from pathlib import Path
+from typing import Any
 
 import click
 
 from synth.cli.exit_codes import ExitCode
+from synth.cli.loop_commands import how_to_check
 
 
 @click.command()
@@ -97,29 +99,73 @@ def export(solution: Path, output: Path, *, shape: int, **kinds: bool) -> None:
     "--shape", metavar="K", type=click.IntRange(min=1), default=1,
     help="Begin with the K-th shape of the file.  [default: 1, the one it tells of first]",
 )  # fmt: skip
-def guide(solution: Path, output: Path | None, *, shape: int) -> None:
-    """Write guide.html, the guide as a page for a browser, from a solution.
+@click.option("--live", is_flag=True, help="Serve the page and show on it where the markers are now.")
+@click.option(
+    "--port", metavar="N", type=click.IntRange(0, 65535), default=0,
+    help="Port of the live page, on this machine alone.  [default: any that is free]",
+)  # fmt: skip
+@click.option(
+    "--udp", metavar="N", type=click.IntRange(1, 65535),
+    help="Take the markers from datagrams to this port of this machine.  [default: lines on stdin]",
+)  # fmt: skip
+@click.option(
+    "--replay", metavar="FILE", type=click.Path(path_type=Path),
+    help="Take the markers from a recording that `synth check` reads, 100 frames a second.",
+)  # fmt: skip
+@click.option(
+    "--speed", metavar="X", type=click.FloatRange(0.01, 1000.0), default=1.0, show_default=True,
+    help="Of the recording.",
+)  # fmt: skip
+@how_to_check
+def guide(
+    solution: Path,
+    output: Path | None,
+    *,
+    shape: int,
+    live: bool,
+    port: int,
+    udp: int | None,
+    replay: Path | None,
+    speed: float,
+    marker_error: float,
+    **how: Any,
+) -> None:
+    """Write guide.html, the guide as a page for a browser, or serve it while the link is bent.
 
     SOLUTION.json is the file of a solution; it is verified again. The page is one file, and needs no network.
+    With --live it shows the markers as they come, and what to do now; each line is a JSON object with
+    marker, x_mm, y_mm, z_mm as in a file of markers. Ctrl-C ends it.
 
     \b
     Exit codes:
-      0  the page is written
+      0  the page is written, or was served
       2  wrong input, and nothing is written
     """
     from synth.cli.session import Session, run
 
-    def command(_session: Session) -> ExitCode:
+    if not live and (udp is not None or replay is not None or port):
+        raise click.UsageError("--port, --udp and --replay are for --live.")
+    if udp is not None and replay is not None:
+        raise click.UsageError("--udp and --replay exclude each other.")
+
+    def command(session: Session) -> ExitCode:
         from synth.cli.say import say
         from synth.export import write_page
+        from synth.live import Recording, served_live
         from synth.solution_file import load_solution
         from synth.synthesis import showing
 
         solved = load_solution(solution)
         if shape != 1:
             solved = showing(solved, shape)
-        for path in write_page(solved, output or solution.parent):
-            say(f"wrote {path}", on_stderr=True)
+        if not live:
+            for path in write_page(solved, output or solution.parent):
+                say(f"wrote {path}", on_stderr=True)
+            return ExitCode.DONE
+        source = Recording(replay, speed) if replay is not None else udp if udp is not None else sys.stdin
+        with served_live(solved, source, port, marker_error=marker_error / 1000.0, **how) as address:
+            say(address)
+            session.goes_on_until_stopped()
         return ExitCode.DONE
 
     sys.exit(run(command, math.inf))

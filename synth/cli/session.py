@@ -27,6 +27,7 @@ _WRITING = 1.3  # s, what drawing the sheet and writing take on a usual machine
 _WRITING_ONE = 1e-5  # s, likewise of each of many targets
 _SEARCHING = 0.3  # of the time left, at least for the search
 _LATE = 0.4  # s, in which a small task is still read and looked at
+_LOOK = 0.1  # s, between looks at whether the user wishes to stop
 DEBUG = "SYNTH_DEBUG"  # if this is set in the environment, what nobody foresaw is shown with its traceback
 
 
@@ -42,6 +43,7 @@ class Session:
 
     Attributes:
         broken: Whether something broke that nobody foresaw.
+        told_when_stopping: What the user is told who wishes to stop.
     """
 
     def __init__(self, time_limit: float, clock: Callable[[], float] = time.perf_counter) -> None:
@@ -49,10 +51,17 @@ class Session:
         self._until = clock() + time_limit
         self._wishes = 0
         self.broken = False
+        self.told_when_stopping = "stopping; the best shape so far is kept"
 
     def stop(self) -> bool:
         """Whether the user wishes to stop."""
         return self._wishes > 0
+
+    def goes_on_until_stopped(self) -> None:
+        """Wait until the user wishes to stop."""
+        self.told_when_stopping = "stopping"
+        while not self.stop():
+            time.sleep(_LOOK)
 
     @property
     def remaining(self) -> float:
@@ -92,7 +101,7 @@ class Session:
         if self._wishes > 1:
             raise KeyboardInterrupt
         with suppress(OSError):  # not through a buffer, which may be in the middle of something else
-            os.write(2, b"\nstopping; the best shape so far is kept\n")
+            os.write(2, f"\n{self.told_when_stopping}\n".encode())
 
     def attempt(self, what: str, do: Callable[[], _T], otherwise: _T) -> _T:
         """Return what a step of the command returns, or something else if it breaks.

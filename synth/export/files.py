@@ -14,7 +14,7 @@ from synth.arrays import frozen_value
 from synth.checks import refuse_unless
 from synth.errors import InputError, Mistake, SynthError, TimeLimitError, in_a_line
 from synth.export.markers import markers_csv
-from synth.export.page import draw_page
+from synth.export.page import draw_page, page_content, page_of
 from synth.export.planners import KINDS, kinds_of, planner_files
 from synth.export.sheet import draw_sheet
 from synth.export.solution_json import solution_to_json
@@ -88,7 +88,7 @@ def write_what_can_be(
         SynthError: They cannot be written. Files of an earlier run are then as they were.
     """
     refuse_unless("solution", solution, Solution)
-    guide = make_guide(solution.task, solution.designs[0]) if solution.designs else None
+    guide = _guide_of(solution)
     files = {
         "solution.json": json_bytes(solution_to_json(solution)),
         "markers.csv": markers_csv(guide).encode(),
@@ -120,8 +120,20 @@ def write_page(solution: Solution, directory: str | os.PathLike[str]) -> list[Pa
         SynthError: It cannot be written. A file of an earlier run is then as it was.
     """
     refuse_unless("solution", solution, Solution)
-    guide = make_guide(solution.task, solution.designs[0]) if solution.designs else None
-    return write_all({"guide.html": draw_page(solution, guide)}, directory)
+    return write_all({"guide.html": draw_page(solution, _guide_of(solution))}, directory)
+
+
+def live_page(solution: Solution) -> bytes:
+    """Return the page that shows what happens while the link is bent; it asks where it comes from for events.
+
+    Args:
+        solution: A solution that is found.
+    """
+    return page_of(page_content(solution, _guide_of(solution)) | {"live": True})
+
+
+def _guide_of(solution: Solution) -> Guide | None:
+    return make_guide(solution.task, solution.designs[0]) if solution.designs else None
 
 
 def write_planner_files(

@@ -1,4 +1,4 @@
-"""A headless Chromium, driven through pipes by its own protocol, with what it complains of and asks the network for."""
+"""A headless Chromium, driven through pipes by its own protocol; what it complains of, what it asks for."""
 
 from __future__ import annotations
 
@@ -86,8 +86,13 @@ class Browser:
 
     def show(self, url: str, width: int, height: int, *, dark: bool = False, pixels: float = 1.0) -> None:
         """Go to an address in a window of a size, in points, and wait until it is drawn."""
-        mobile = width < 600
-        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=pixels, mobile=mobile)  # fmt: skip
+        self.ask(
+            "Emulation.setDeviceMetricsOverride",
+            width=width,
+            height=height,
+            deviceScaleFactor=pixels,
+            mobile=width < 600,
+        )
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self.ask("Emulation.setEmulatedMedia", features=[scheme])
         self.ask("Page.navigate", url=url)
@@ -110,7 +115,7 @@ class Browser:
             time.sleep(0.02)
 
     def point(self, kind: str, x: float, y: float) -> None:
-        """Move the mouse to a place, or press or release it there: mouseMoved, mousePressed, mouseReleased."""
+        """Move the mouse to a place, or press or release it: mouseMoved, mousePressed, mouseReleased."""
         held = {} if kind == "mouseMoved" else {"button": "left", "clickCount": 1}
         self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, **held)
 
@@ -120,7 +125,8 @@ class Browser:
 
     def paper(self) -> bytes:
         """Return what is printed, as PDF."""
-        return base64.b64decode(self.ask("Page.printToPDF", preferCSSPageSize=True, printBackground=True)["data"])
+        printed = self.ask("Page.printToPDF", preferCSSPageSize=True, printBackground=True)
+        return base64.b64decode(printed["data"])
 
 
 @contextmanager
@@ -133,7 +139,7 @@ def browser() -> Iterator[Browser]:
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         # The protocol is on the descriptors 3 and 4.
         command = f'exec "$@" 3<&{to_it[0]} 4>&{from_it[1]}'
-        running = subprocess.Popen(  # noqa: S603
+        running = subprocess.Popen(
             ["/bin/bash", "-c", command, "bash", program, *FLAGS, f"--user-data-dir={profile}"],
             pass_fds=(to_it[0], from_it[1]), stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
         )  # fmt: skip

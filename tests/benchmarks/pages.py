@@ -27,7 +27,14 @@ if TYPE_CHECKING:
     from synth.synthesis import Solution
 
 ROOT = Path(__file__).parents[2]
-PROBLEMS = ("two-crates", "four-targets", "through-the-window", "along-a-pipe", "out-of-reach", "wall-mounted")
+PROBLEMS = (
+    "two-crates",
+    "four-targets",
+    "through-the-window",
+    "along-a-pipe",
+    "out-of-reach",
+    "wall-mounted",
+)
 WIDE, NARROW = (1500, 900), (390, 844)
 NUMBERS = re.compile(r"-?\d+\.\d+")
 
@@ -73,7 +80,8 @@ def look(tab: Browser, solution: Solution, name: str, into: Path) -> dict[str, A
     """Look at the page of a solution in all ways; leave pictures."""
     began = time.perf_counter()
     (page,) = write_page(solution, into / name)
-    record: dict[str, Any] = {"kilobytes": page.stat().st_size / 1e3, "written_s": time.perf_counter() - began}
+    took = time.perf_counter() - began
+    record: dict[str, Any] = {"kilobytes": page.stat().st_size / 1e3, "written_s": took}
     url = page.resolve().as_uri()
     for kind, size, dark in (("wide", WIDE, False), ("dark", WIDE, True), ("narrow", NARROW, False)):
         tab.show(url, *size, dark=dark, pixels=2.0 if kind == "narrow" else 1.0)
@@ -85,8 +93,8 @@ def look(tab: Browser, solution: Solution, name: str, into: Path) -> dict[str, A
     assert record["off_mm"] < 0.06  # a tenth of a millimetre is told
     assert record["pointed_at_workspace"] > 5
     shapes = tab.evaluate("document.querySelectorAll('.pick').length")
-    for _ in range(shapes):  # each shape once, the last one left
-        tab.evaluate(f"document.querySelectorAll('.pick')[{_}].click()")
+    for shape in range(shapes):  # each once, the last one left
+        tab.evaluate(f"document.querySelectorAll('.pick')[{shape}].click()")
     tab.evaluate("document.querySelectorAll('#layers button, #views button').forEach((each) => each.click())")
     tab.evaluate("document.querySelectorAll('.play').forEach((each) => each.click())")
     record["frame_ms"] = tab.evaluate(

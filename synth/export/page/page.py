@@ -31,6 +31,7 @@ _SCRIPTS = (
     "labels.js",
     "panel.js",
     "tables.js",
+    "live.js",
     "page.js",
 )
 

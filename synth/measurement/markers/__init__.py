@@ -4,6 +4,7 @@ from synth.measurement.markers.arm_fit import ArmFit, fit_arm, marker_positions
 from synth.measurement.markers.calibration import Calibration, calibrate
 from synth.measurement.markers.examination import Examination, examine
 from synth.measurement.markers.examined_file import examine_file
+from synth.measurement.markers.frame_by_frame import at_rest, readings_of_lines, recorded_frames
 from synth.measurement.markers.marker_file import load_points, load_readings, load_unnamed
 from synth.measurement.markers.marker_rows import row_schema
 from synth.measurement.markers.markers import (
@@ -29,6 +30,7 @@ __all__ = [
     "Place",
     "Readings",
     "StandingArm",
+    "at_rest",
     "calibrate",
     "cross",
     "examine",
@@ -45,6 +47,8 @@ __all__ = [
     "markers_named",
     "matched",
     "onto_vertical",
+    "readings_of_lines",
+    "recorded_frames",
     "rotation_matrix",
     "row_schema",
     "sigma_of",

@@ -34,8 +34,8 @@ def capture_readings(capture: Capture, robot: Robot, joints: Sequence[float], fi
     Raises:
         InputError: None of its markers is one of the arm, or cells are wrong.
     """
-    known = [(track, marker) for track in capture.tracks if (marker := _marker_of(track.name, robot))]
-    solved = [name for name in capture.solved if _marker_of(name, robot)]
+    known = arm_tracks(capture, robot)
+    solved = [name for name in capture.solved if arm_marker(name, robot)]
     if not known:
         raise InputError([Mistake(_nothing_known(capture, solved), file)])
     mistakes = _ambiguous(known, file)
@@ -45,14 +45,19 @@ def capture_readings(capture: Capture, robot: Robot, joints: Sequence[float], fi
     if mistakes:
         more = [Mistake("has more such lines", file)] if len(mistakes) > MISTAKES_AT_MOST else []
         raise InputError([*mistakes[:MISTAKES_AT_MOST], *more])
-    others = [track.name for track in capture.tracks if _marker_of(track.name, robot) is None]
+    others = [track.name for track in capture.tracks if arm_marker(track.name, robot) is None]
     warnings = [f"passed over, being no markers of this arm: {_some(others)}"] if others else []
     if solved:
         warnings.append(f"passed over, being solved from a rigid body and not measured: {_some(solved)}")
     return upright(resting.readings({marker.name for _, marker in known}, file, warnings))
 
 
-def _marker_of(name: str, robot: Robot) -> Marker | None:
+def arm_tracks(capture: Capture, robot: Robot) -> list[tuple[Track, Marker]]:
+    """Return the columns of a capture that are markers of an arm."""
+    return [(track, marker) for track in capture.tracks if (marker := arm_marker(track.name, robot))]
+
+
+def arm_marker(name: str, robot: Robot) -> Marker | None:
     """Return the marker of a name with or without that of its set before it."""
     return marker_named(name, robot) or marker_named(name.partition(":")[2], robot)
 

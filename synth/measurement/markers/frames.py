@@ -45,15 +45,22 @@ def upright(readings: Readings) -> Readings:
 
     By a turn, never a reflection: x stays x where y is up. What is mirrored stays so, and is refused later.
     """
-    found = _axis_1(readings)
-    if found is None:
+    axis, turn = turn_upright(readings)
+    if not axis:
         return readings
-    for axis, words in _UP.items():
-        if found[1]["xyz".index(axis)] >= np.cos(_UPRIGHT):
-            said = f"P1 to P2 points along {axis} of the file: its frame was turned so that z is up"
-            turned = readings.positions @ _FRAMES[words].T
-            return Readings(readings.markers, turned, readings.joints, (*readings.warnings, said))
-    return readings
+    said = f"P1 to P2 points along {axis} of the file: its frame was turned so that z is up"
+    turned = readings.positions @ turn.T
+    return Readings(readings.markers, turned, readings.joints, (*readings.warnings, said))
+
+
+def turn_upright(readings: Readings) -> tuple[str, FloatArray]:
+    """Return which axis is up, x or y, and the turn that brings it to z; none if it is z, or not shown."""
+    found = _axis_1(readings)
+    if found is not None:
+        for axis, words in _UP.items():
+            if found[1]["xyz".index(axis)] >= np.cos(_UPRIGHT):
+                return axis, _FRAMES[words]
+    return "", np.eye(3)
 
 
 def wrong_base(readings: Readings) -> str:

@@ -54,7 +54,7 @@ def load_readings(path: str | os.PathLike[str], robot: Robot, joint1: float) -> 
         return capture_readings(text, robot, (joint1, _STRAIGHT), file)
     is_json = text.lstrip()[:1] == "{"
     rows = json_rows(text, file) if is_json else csv_rows(text, file)
-    return _readings(rows, robot, joint1, file)
+    return readings_of_rows(rows, robot, joint1, file)
 
 
 def load_unnamed(path: str | os.PathLike[str]) -> FloatArray:
@@ -127,8 +127,8 @@ def load_points(path: str | os.PathLike[str]) -> tuple[FloatArray, FloatArray | 
     return array[:, :3], np.radians(array[:, 3:]) if all(angled) else None
 
 
-def _readings(rows: list[Row], robot: Robot, joint1: float, file: str) -> Readings:
-    """Return the means of the frames."""
+def readings_of_rows(rows: list[Row], robot: Robot, joint1: float, file: str) -> Readings:
+    """Return the means of the frames; see `load_readings`."""
     mistakes: list[Mistake] = []
     resting, named = RestingMarkers(), set()
     for number, row in rows:

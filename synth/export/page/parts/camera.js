@@ -13,6 +13,8 @@ function makeCamera([lowest, highest]) {
     camera.centre = home.centre;
     camera.far = home.far;
   };
+  /** Come close to a point. */
+  camera.lookAt = (point, far) => Object.assign(camera, { centre: point, far });
   camera.distance = () => (camera.far * (0.41 * size)) / Math.tan(OPENING / 2) / Math.min(1, camera.aspect);
   camera.eye = () => {
     const a = (camera.azimuth * Math.PI) / 180, e = (camera.elevation * Math.PI) / 180;

@@ -57,14 +57,14 @@ function placeLabels(box, view, points) {
 }
 
 /** What is told of what is under the pointer: a named point, the link, or the workspace. */
-function toldAt(content, state, view, x, y) {
+function toldAt(content, state, view, allNamed, x, y) {
   const shape = content.shapes[state.shape], { width, height } = view.box(), projection = view.camera.projection();
   const apart = (at) => {
     const p = projected(projection, at);
     return p.before ? Math.hypot(((p.x - x) * width) / 2, ((p.y - y) * height) / 2) : Infinity;
   };
   const nearest = (points) => points.map((point) => ({ point, off: apart(point.at) })).reduce((a, b) => (b.off < a.off ? b : a), { off: Infinity });
-  const named = nearest(namedPoints(content, state, view.size));
+  const named = nearest(allNamed());
   if (named.off < 14) return { lines: named.point.told };
   if (!shape) return null;
   const { arm } = shape, { first } = poses(arm, state.joints), spaces = arm.centreline.length - 1;
@@ -80,7 +80,7 @@ function toldAt(content, state, view, x, y) {
 }
 
 /** Tell what is under the pointer, and take the arm to where the workspace is clicked. */
-function listenToPointer(canvas, hover, content, state, view, goTo) {
+function listenToPointer(canvas, hover, content, state, view, allNamed, goTo) {
   let pressed = null;
   const at = (event) => {
     const box = canvas.getBoundingClientRect();
@@ -88,7 +88,7 @@ function listenToPointer(canvas, hover, content, state, view, goTo) {
   };
   canvas.addEventListener("pointerdown", (event) => (pressed = [event.clientX, event.clientY]));
   canvas.addEventListener("pointermove", (event) => {
-    const told = event.buttons ? null : toldAt(content, state, view, ...at(event));
+    const told = event.buttons ? null : toldAt(content, state, view, allNamed, ...at(event));
     hover.className = told ? "shown" : "";
     if (!told) return;
     hover.replaceChildren(...told.lines.map((text) => element("div", { text })));
@@ -99,7 +99,7 @@ function listenToPointer(canvas, hover, content, state, view, goTo) {
   canvas.addEventListener("pointerleave", () => (hover.className = ""));
   canvas.addEventListener("pointerup", (event) => {
     if (!pressed || Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 4) return;
-    const told = toldAt(content, state, view, ...at(event));
+    const told = toldAt(content, state, view, allNamed, ...at(event));
     if (told && told.joints) goTo(told.joints);
   });
 }

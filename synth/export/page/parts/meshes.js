@@ -71,6 +71,19 @@ function boxMesh(centre, size, axes) {
   return mesh;
 }
 
+/** A cone along z, its base at a place. */
+function coneMesh(base, radius, height, sides = 20) {
+  const mesh = emptyMesh(), slant = Math.hypot(radius, height);
+  for (let side = 0; side < sides; side++) {
+    const a = (2 * Math.PI * side) / sides, c = Math.cos(a), s = Math.sin(a);
+    mesh.positions.push(base[0] + radius * c, base[1] + radius * s, base[2], base[0], base[1], base[2] + height);
+    mesh.normals.push(...[0, 1].flatMap(() => [(c * height) / slant, (s * height) / slant, radius / slant]));
+    const k = 2 * side, next = (2 * (side + 1)) % (2 * sides);
+    mesh.triangles.push(k, next, k + 1);
+  }
+  return mesh;
+}
+
 /** Three crossed bars: the mark of what is missed. */
 function jackMesh(centre, size) {
   const arms = [[1, 1, 0], [1, -1, 0], [0, 0, 1.4142]].map((d) => scaled(unit(d), size));

@@ -12,10 +12,12 @@ const state = {
   pixels: Math.min(window.devicePixelRatio || 1, 2),
 };
 const view = makeView(canvas, content, state);
-view.drawn = () => placeLabels(labels, view, namedPoints(content, state, view.size));
+view.drawn = () => placeLabels(labels, view, allNamed());
 if (!view.drawing) document.getElementById("view").append(element("p", { className: "nothing", text: "This browser has no WebGL 2 to draw with; all else is beside." }));
 
-let wanted = 0, playing = 0, joints = null;
+let wanted = 0, playing = 0, joints = null, live = null;
+/** All that has a name: of the solution, and of what is seen now. */
+const allNamed = () => [...(live ? live.named() : []), ...namedPoints(content, state, view.size)];
 /** Draw anew with the next picture of the screen; while it is printed nothing moves. */
 function redraw() {
   wanted ||= requestAnimationFrame(() => {
@@ -65,17 +67,19 @@ function setTheme(name) {
 function fill() {
   const panel = document.getElementById("panel"), top = panel.scrollTop;
   joints = jointsOf(content, state, act);
-  panel.replaceChildren(...[headerOf(content, state, act), ...missedOf(content), shapesOf(content, state, act), joints.node, ...stepsOf(content, state), targetsOf(content, state, act), waysOf(content, state, act), comparedOf(content, state, act)].filter(Boolean));
+  panel.replaceChildren(...[headerOf(content, state, act), live && live.node, ...missedOf(content), ...(live ? [] : [shapesOf(content, state, act), joints.node]), ...stepsOf(content, state), targetsOf(content, state, act), ...(live ? [] : [waysOf(content, state, act), comparedOf(content, state, act)])].filter(Boolean));
   panel.scrollTop = top;
   joints.show(state.joints);
   redraw();
 }
 
 setTheme(state.theme);
+if (content.live) live = makeLive(content, state, view, act);
 fillLayers(document.getElementById("layers"), content, state, redraw);
 document.getElementById("views").replaceChildren(...Object.keys(VIEWS).map((name) => element("button", { type: "button", text: name, onclick: () => { view.camera.lookFrom(name); redraw(); } })));
+if (live) document.getElementById("views").append(element("button", { type: "button", text: "Close", onclick: () => { view.camera.lookAt(pointsOf(first.arm, state.joints).P3, 0.3); redraw(); } }));
 listenToGestures(canvas, view.camera, redraw);
-listenToPointer(canvas, hover, content, state, view, (angles) => act.joints(angles));
+listenToPointer(canvas, hover, content, state, view, allNamed, (angles) => act.joints(angles));
 dark.addEventListener("change", () => { setTheme(dark.matches ? "dark" : "light"); fill(); });
 new ResizeObserver(redraw).observe(canvas);
 

@@ -1,0 +1,5 @@
+"""The guide while the link is bent: markers as they come, what to do now, and the page that shows it."""
+
+from synth.live.serving import Recording, served_live
+
+__all__ = ["Recording", "served_live"]
