@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from synth.synthesis import Solution
 
 _SOURCE = "the stream"
-_PAUSE = 0.05  # s, between checks: the frames come first
+_PAUSE = 0.1  # s, between checks: the frames come first
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -33,6 +34,11 @@ class PageServer(ThreadingHTTPServer):
         self.page, self.feed = page, feed
         super().__init__((ADDRESS, port), _Handler)
 
+    def handle_error(self, request: object, client_address: object) -> None:
+        """Say nothing of a browser that has gone; of anything else what the library says."""
+        if not isinstance(sys.exception(), OSError):
+            super().handle_error(request, client_address)  # type: ignore[arg-type]
+
 
 class _Handler(BaseHTTPRequestHandler):
     """Answers a browser: the page, or events until it goes."""
@@ -58,7 +64,7 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _send_events(self, feed: Feed) -> None:
         """Send what is new, the newest of each kind, until the browser has gone or nothing more is told."""
-        number = 0
+        number, due = 0, time.monotonic()
         try:
             self.wfile.write(f"retry: {_RETRY}\n\n".encode())
             while not feed.closed:
@@ -66,7 +72,9 @@ class _Handler(BaseHTTPRequestHandler):
                 text = "".join(f"event: {kind}\ndata: {data}\n\n" for kind, data in events)
                 self.wfile.write((text or ": still here\n\n").encode())
                 self.wfile.flush()
-                time.sleep(_LEAST_APART)
+                now = time.monotonic()
+                due = max(due + _LEAST_APART, now)
+                time.sleep(due - now)
         except OSError:
             self.close_connection = True
 

@@ -1,8 +1,8 @@
 """The live page in a real browser: `python tests/benchmarks/live_page.py [DIR]`, from the project's root.
 
-A simulated arm stands wrong, is corrected and stands right; its markers come as datagrams, 60 frames a second.
-The stream is dropped and the server started anew. Told are the delay from a datagram to the picture that
-shows it, and how many pictures a second there are; pictures of the page are left in DIR.
+A simulated arm stands wrong, is corrected and stands right; its markers come as datagrams, 60 frames a
+second. The stream is dropped and the server started anew. Told are the delay from a datagram to the picture
+that shows it, and how many pictures a second there are; pictures of the page are left in DIR.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from synth.synthesis import Solution
 
 ROOT = Path(__file__).parents[2]
-NAMES = "P1 P2 P3 P4 P5 A2:-150 A2:150 A1:300".split()
+NAMES = ["P1", "P2", "P3", "P4", "P5", "A2:-150", "A2:150", "A1:300"]
 OFF = np.array([8e-3, -6e-3, 9e-3, 0.06, 0.03, -0.05])  # where the link's end stands first, m and rad
 RATE = 60.0  # frames a second
 PORT, UDP = 8711, 8712
@@ -64,9 +64,7 @@ class Arm:
         while not self.ended:
             frame, due = frame + 1, due + 1.0 / RATE
             if self.sending:
-                exact = marker_positions(
-                    self._wanted.moved(self.share * OFF), self._blank, self._tip_offset
-                )
+                exact = marker_positions(self._wanted.moved(self.share * OFF), self._blank, self._tip_offset)
                 seen = 1e3 * (exact + 1.5e-4 * rng.normal(size=exact.shape))
                 rows = [
                     {"marker": name, "x_mm": x, "y_mm": y, "z_mm": z, "frame": frame}
@@ -92,11 +90,12 @@ def served(solution_file: Path) -> Iterator[str]:
         running.stdout.close()
 
 
-# In the page: when each picture was shown, and how old the frame was that it shows.
+# In the page: how many frames come, how old the newest is when a picture is made, and how many pictures there
+# are. The last depends on what draws: a processor in place of a graphics card makes few.
 PROBE = """new Promise((done) => {
   const ages = [], source = new EventSource('/events'), start = performance.now();
-  let at = 0, pictures = 0;
-  source.addEventListener('frame', (event) => { at = JSON.parse(event.data).at; });
+  let at = 0, pictures = 0, frames = 0;
+  source.addEventListener('frame', (event) => { at = JSON.parse(event.data).at; frames += 1; });
   const step = (now) => {
     pictures += 1;
     if (at) ages.push(Date.now() - 1000 * at);
@@ -104,7 +103,7 @@ PROBE = """new Promise((done) => {
     if (now - start < 4000) return requestAnimationFrame(step);
     source.close();
     ages.sort((a, b) => a - b);
-    done({ pictures_a_second: pictures / 4, frames_a_second: ages.length / 4,
+    done({ pictures_a_second: pictures / 4, frames_a_second: frames / 4,
            delay_ms: ages[ages.length >> 1], delay_95_ms: ages[Math.floor(0.95 * ages.length)] });
   };
   requestAnimationFrame(step);

@@ -59,11 +59,12 @@ function alongFrom(place, direction) {
 }
 
 function makeLive(content, state, view, act) {
-  const head = element("div", { className: "verdict waiting" }), words = element("p", { className: "words" }), dials = element("div", { className: "dials" });
+  const head = element("div", { className: "verdict waiting" }), words = element("p", { className: "words" });
+  const enlarged = element("p", { className: "small", text: `Orange is what is seen, green where it is to be. The arrow is ${ENLARGED} times as long as the way.`, hidden: true }), dials = element("div", { className: "dials" });
   const full = element("ul", { className: "small" }), source = element("p", { className: "small" }), sound = makeSound();
   const switched = element("button", { type: "button", className: "quiet", text: "Sound on" });
   switched.onclick = () => (switched.textContent = sound.toggle() ? "Sound off" : "Sound on");
-  const node = element("section", { id: "live" }, head, words, dials, element("details", {}, element("summary", { text: "In full" }), full), source, switched);
+  const node = element("section", { id: "live" }, head, words, enlarged, dials, element("details", {}, element("summary", { text: "In full" }), full), source, switched);
   const arm = content.shapes[0].arm, base = rigid(arm.joint1), live = { node, markers: {}, check: null, last: 0, frames: 0, delay: 0 };
 
   function tell(status, lock, title, message) {
@@ -77,6 +78,7 @@ function makeLive(content, state, view, act) {
     live.check = check;
     tell(check.status, check.lock, TITLES[check.status], check.message);
     words.textContent = check.correction ? check.correction.words : "";
+    enlarged.hidden = !check.correction;
     dials.replaceChildren(...check.targets.slice(0, 12).map(dialOf));
     full.replaceChildren(...check.words.map((text) => element("li", { text: text.replace(/^• /, "") })));
     redraw();
@@ -120,7 +122,7 @@ function makeLive(content, state, view, act) {
   };
 
   const needle = view.drawing && view.drawing.stored(joined([tubeMesh([[0, 0, 0], [0, 0, 0.78]], 0.022, 16, 3), coneMesh([0, 0, 0.72], 0.07, 0.28)]));
-  const stick = view.drawing && view.drawing.stored(tubeMesh([[0, 0, 0], [0, 0, 1]], 1, 10, 2));
+  const stick = view.drawing && view.drawing.stored(tubeMesh([[0, 0, 0], [0, 0, 1]], 1, 12, 0));
   view.more.push(({ solid, ball, colours, mark }) => {
     const spot = (at, radius) => [radius, 0, 0, 0, 0, radius, 0, 0, 0, 0, radius, 0, ...at, 1];
     const bar = (a, b, radius, colour, alpha) => {
@@ -132,7 +134,10 @@ function makeLive(content, state, view, act) {
       if (pair.every((name) => seen[name])) bar(seen[pair[0]], seen[pair[1]], 0.3 * mark, colours.axis);
     Object.values(seen).forEach((at) => solid(ball, colours.axis, { pose: spot(at, 0.9 * mark) }));
     const wanted = live.wanted();
-    for (const name of Object.keys(wanted)) bar(seen[name], wanted[name], 0.22 * mark, colours.found);
+    for (const name of Object.keys(wanted)) {
+      bar(seen[name], wanted[name], 0.22 * mark, colours.found);
+      solid(ball, colours.found, { pose: spot(wanted[name], 0.9 * mark) });
+    }
     const arrow = live.arrow();
     if (arrow) {
       const length = Math.max(ENLARGED * norm(arrow.way), 0.05);

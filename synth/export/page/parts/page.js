@@ -7,7 +7,9 @@ const first = content.shapes[0];
 const state = {
   shape: 0,
   joints: content.instructions ? content.instructions.hold : first ? first.joints[content.targets.listed[0]?.drawn ?? 0] : [0, 0],
-  layers: Object.fromEntries(Object.keys(LAYERS).map((name) => [name, name !== "beyond"])),
+  // While the link is bent only what is at hand is of interest.
+  layers: Object.fromEntries(Object.keys(LAYERS).map((name) => [name, !(content.live ? ["beyond", "surface", "markers"] : ["beyond"]).includes(name)])),
+  ghost: Boolean(content.live), // the arm is one that is wanted, and not there yet
   theme: dark.matches ? "dark" : "light",
   pixels: Math.min(window.devicePixelRatio || 1, 2),
 };

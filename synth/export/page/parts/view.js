@@ -85,15 +85,17 @@ function makeView(canvas, content, state) {
     const pose = shape && poses(shape.arm, state.joints);
     if (shape) {
       solid(kept.base, colours.base, { pose: pose.base });
-      solid(kept.link, colours.link, { pose: pose.first });
-      solid(kept.rod, colours.rod, { pose: pose.second });
+      if (!state.ghost) {
+        solid(kept.link, colours.link, { pose: pose.first });
+        solid(kept.rod, colours.rod, { pose: pose.second });
+      }
       if (on.axes) {
         solid(kept.axis1, colours.axis, { pose: pose.base, flatness: 0.6 });
         solid(kept.axis2, colours.axis, { pose: pose.second, flatness: 0.6 });
       }
       const spots = Object.values(pointsOf(shape.arm, state.joints)), tip = spots.pop();
       const shownBall = (at, radius, colour) => solid(ball, colour, { pose: [radius, 0, 0, 0, 0, radius, 0, 0, 0, 0, radius, 0, ...at, 1] });
-      shownBall(tip, 1.35 * Math.max(shape.arm.rod_radius, 0.006), colours.rod);
+      if (!state.ghost) shownBall(tip, 1.35 * Math.max(shape.arm.rod_radius, 0.006), colours.rod);
       if (on.markers && shape.arm.markers) spots.forEach((at) => shownBall(at, 0.75 * mark, colours.ink));
     }
     if (on.targets) {
@@ -102,7 +104,13 @@ function makeView(canvas, content, state) {
       solid(kept.paths, colours.ink, { flatness: 0.5 });
     }
     if (on.axes) for (const name in frame) solid(frame[name], FRAME[name][0], { flatness: 0.5 });
-    view.more.forEach((paint) => paint({ solid, ball, stored, removed, colours, mark }));
+    view.more.forEach((paint) => paint({ solid, ball, colours, mark }));
+    if (pose && state.ghost) {
+      gl.enable(gl.CULL_FACE);
+      solid(kept.link, colours.link, { pose: pose.first, alpha: 0.35 });
+      solid(kept.rod, colours.rod, { pose: pose.second, alpha: 0.35 });
+      gl.disable(gl.CULL_FACE);
+    }
 
     gl.depthMask(false);
     if (on.floor && content.floor !== null) {
