@@ -119,9 +119,9 @@ class Browser:
         held = {} if kind == "mouseMoved" else {"button": "left", "clickCount": 1}
         self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, **held)
 
-    def picture(self) -> bytes:
-        """Return what is seen, as PNG."""
-        return base64.b64decode(self.ask("Page.captureScreenshot", format="png")["data"])
+    def picture(self, kind: str = "png") -> bytes:
+        """Return what is seen, as "png" or "jpeg"."""
+        return base64.b64decode(self.ask("Page.captureScreenshot", format=kind, quality=88)["data"])
 
     def paper(self) -> bytes:
         """Return what is printed, as PDF."""

@@ -111,9 +111,8 @@ PROBE = """new Promise((done) => {
 TITLE = "document.querySelector('.verdict strong').textContent"
 
 
-def main() -> None:
-    """Play the record and print what was seen."""
-    into = Path(sys.argv[1] if len(sys.argv) > 1 else tempfile.mkdtemp(prefix="live-"))
+def play(into: Path) -> dict[str, Any]:
+    """Play it all, leave pictures in a folder, and return what was measured."""
     solution = solve(load_task(ROOT / "problems" / "two-crates" / "task.yaml"))
     file = write_files(solution, into)[0]
     arm = Arm(solution)
@@ -121,11 +120,11 @@ def main() -> None:
     record: dict[str, Any] = {}
     with browser() as tab:
         with served(file) as address:
-            tab.show(address, 1500, 900)
+            tab.show(address, 1360, 800)
             tab.wait_for(f"{TITLE} === 'Correct'")
             tab.evaluate("[...document.querySelectorAll('#views button')].at(-1).click()")
             time.sleep(1.0)
-            (into / "live-correct.png").write_bytes(tab.picture())
+            (into / "live-correct.jpg").write_bytes(tab.picture("jpeg"))
             record["words"] = tab.evaluate("document.querySelector('.words').textContent")
             record |= tab.evaluate(PROBE)
             for share in np.linspace(1.0, 0.0, 60).tolist():
@@ -133,7 +132,7 @@ def main() -> None:
                 time.sleep(1.0 / RATE)
             tab.wait_for(f"{TITLE} === 'Lock'")
             time.sleep(0.5)
-            (into / "live-lock.png").write_bytes(tab.picture())
+            (into / "live-lock.jpg").write_bytes(tab.picture("jpeg"))
             arm.sending = False
             tab.wait_for("document.querySelector('#live').innerText.includes('no marker is seen any more')")
             arm.sending = True
@@ -148,12 +147,18 @@ def main() -> None:
             tab.show(address, 390, 844, dark=True, pixels=2.0)
             tab.wait_for(f"{TITLE} === 'Correct'")
             time.sleep(1.0)
-            (into / "live-narrow-dark.png").write_bytes(tab.picture())
+            (into / "live-narrow-dark.jpg").write_bytes(tab.picture("jpeg"))
         unexpected = [told for told in tab.complaints if "ERR_" not in told]  # of the server that was ended
         assert not unexpected, unexpected
         assert all(url.startswith(f"http://127.0.0.1:{PORT}/") for url in tab.requests), tab.requests
     arm.ended = True
-    print(json.dumps(record, indent=1))
+    return record
+
+
+def main() -> None:
+    """Play it and print what was seen."""
+    into = Path(sys.argv[1] if len(sys.argv) > 1 else tempfile.mkdtemp(prefix="live-"))
+    print(json.dumps(play(into), indent=1))
 
 
 if __name__ == "__main__":

@@ -8,7 +8,8 @@ function headerOf(content, state, act) {
   const number = shape && content.shapes.length > 1 ? `shape ${shape.number} of ${content.shapes.length}, ` : "";
   return element("header", {}, buttons,
     element("h1", { text: content.name }),
-    element("p", { className: content.found ? "headline found" : "headline missed", text: `${content.found ? "✓" : "✗"} ${content.headline}` }),
+    content.live ? element("p", { className: "small", text: `As computed: ${content.headline}` })
+      : element("p", { className: content.found ? "headline found" : "headline missed", text: `${content.found ? "✓" : "✗"} ${content.headline}` }),
     element("p", { className: "small", text: `${content.robot}, ${number}seed ${content.seed}, synth ${content.version}` }));
 }
 

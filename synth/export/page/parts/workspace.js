@@ -1,6 +1,6 @@
 // The surface on which P5 moves: both joints through a whole turn, and where a ray meets it.
 
-const CELLS = 120; // of each joint's turn
+const CELLS = 96; // of each joint's turn
 
 /** The surface of an arm as a grid that closes up: places, normals and joint angles of its vertices. */
 function workspaceOf(arm) {
