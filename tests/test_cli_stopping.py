@@ -185,7 +185,7 @@ def test_a_sheet_is_not_begun_when_the_time_is_up(tmp_path):
     before = "from synth.cli.session import Session\nSession.is_up = lambda self: True\n"
     answer = program("solve", ONE_TARGET, "-o", tmp_path, before=before)
     assert answer.returncode == 0  # the answer is whole without it
-    assert "guide.pdf could not be made: the time limit was over before the sheet was begun" in answer.stderr
+    assert "guide.pdf could not be made: the time limit was over before it was begun" in answer.stderr
     assert json.loads((tmp_path / "solution.json").read_text())["status"] == "found"
     assert not (tmp_path / "guide.pdf").exists()
 

@@ -158,7 +158,7 @@ def test_the_page_is_written_beside_the_sheet_and_an_old_one_goes_if_it_cannot_b
     def broken(_solution, _guide):
         raise ValueError("no page")
 
-    monkeypatch.setattr("synth.export.files._DRAWN", {"guide.html": broken})
+    monkeypatch.setattr("synth.export.files.draw_page", broken)
     with pytest.raises(SynthError, match=r"guide.html could not be made: .*no page"):
         write_files(SOLUTION, tmp_path)
     assert not (tmp_path / "guide.html").exists()

@@ -4,11 +4,7 @@ from synth.export.calibration_json import calibration_to_json
 from synth.export.check_json import check_to_json, refusal_to_json
 from synth.export.files import (
     SOLUTION_FILES,
-    json_bytes,
-    json_text,
     live_page,
-    prepare_directory,
-    write_all,
     write_files,
     write_page,
     write_planner_files,
@@ -22,13 +18,14 @@ from synth.export.inspection import (
     inspections_to_json,
     write_inspections,
 )
-from synth.export.json_data import plain
+from synth.export.json_data import json_bytes, json_text, plain
 from synth.export.markers import markers_csv
 from synth.export.page import page_content
 from synth.export.planners import casadi_kinematics, kinematics_c_code
 from synth.export.sheet import draw_robot, draw_sheet
 from synth.export.solution_json import solution_to_json
 from synth.export.task_json import task_to_json
+from synth.export.writing import prepare_directory, write_all
 
 __all__ = [
     "SOLUTION_FILES",

@@ -1,38 +1,31 @@
-"""A solution as a set of files, written whole or not at all."""
+"""A solution as a set of files: for programs, for the hand, for the eye."""
 
 from __future__ import annotations
 
-import contextlib
-import errno
-import json
-import os
-import tempfile
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from synth.arrays import frozen_value
 from synth.checks import refuse_unless
 from synth.errors import InputError, Mistake, SynthError, TimeLimitError, in_a_line
+from synth.export.json_data import json_bytes
 from synth.export.markers import markers_csv
 from synth.export.page import draw_page, page_content, page_of
 from synth.export.planners import KINDS, kinds_of, planner_files
 from synth.export.sheet import draw_sheet
 from synth.export.solution_json import solution_to_json
+from synth.export.writing import write_all
 from synth.guide import make_guide
 from synth.synthesis import Solution
 from synth.watch import never
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+    import os
+    from collections.abc import Callable, Iterable, Mapping
+    from pathlib import Path
 
     from synth.guide import Guide
 
-_MOST_INDENTED = 1000  # targets in a file that is laid out for the eye
 SOLUTION_FILES = ("solution.json", "guide.pdf", "guide.html", "markers.csv")
-_DRAWN: Mapping[str, Callable[[Solution, Guide | None], bytes]] = {
-    "guide.pdf": draw_sheet,
-    "guide.html": draw_page,
-}
 
 
 @frozen_value
@@ -82,7 +75,7 @@ def write_what_can_be(
     Args:
         solution: What a synthesis found, whatever its status.
         directory: Where to; it is made if it is not there. Files of these names are replaced.
-        is_up: Asked whether the time is up: then a sheet, which takes a second, is not begun.
+        is_up: Asked whether the time is up: then sheet and page, which take a second, are not begun.
 
     Raises:
         SynthError: They cannot be written. Files of an earlier run are then as they were.
@@ -94,7 +87,7 @@ def write_what_can_be(
         "markers.csv": markers_csv(guide).encode(),
     }
     failed: dict[str, BaseException] = {}
-    for name, draw in _DRAWN.items():
+    for name, draw in {"guide.pdf": draw_sheet, "guide.html": draw_page}.items():
         try:
             _see_the_time(is_up)
             files[name] = draw(solution, guide)
@@ -163,108 +156,3 @@ def write_planner_files(
         known = f"known are {', '.join(KINDS)}"
         raise InputError([Mistake(f"is no kind of file; {known}", key=str(kind)) for kind in unknown])
     return write_all(planner_files(solution, kinds), directory)
-
-
-def write_all(
-    files: Mapping[str, bytes], directory: str | os.PathLike[str], *, without: Iterable[str] = ()
-) -> list[Path]:
-    """Write files into a directory, all or none; a reader never meets half of one.
-
-    Args:
-        files: Contents by name.
-        directory: Where to; it is made if it is not there.
-        without: Names of files that must not be there any more.
-
-    Returns:
-        The paths of the files, in the order given.
-
-    Raises:
-        SynthError: They cannot be written. What stood there before stands there still.
-    """
-    directory = Path(directory)
-    gone = [directory / name for name in without]
-    # All are written beside their places, then moved there; the process id keeps two runs apart.
-    beside = {directory / name: directory / f".{name}.{os.getpid()}.part" for name in files}
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        _see_that_files_can_be(beside)
-        for path, temporary in beside.items():
-            temporary.write_bytes(files[path.name])
-        with _restored_if_it_fails([*beside, *gone]):
-            for path, temporary in beside.items():
-                temporary.replace(path)
-            for path in gone:
-                path.unlink(missing_ok=True)
-    except OSError as error:
-        raise _cannot_write(directory, error) from error
-    finally:
-        for temporary in beside.values():
-            with contextlib.suppress(OSError):
-                temporary.unlink()
-    return list(beside)
-
-
-@contextlib.contextmanager
-def _restored_if_it_fails(paths: Sequence[Path]) -> Iterator[None]:
-    """Put files back as they were, or away if they were not there, if a block fails."""
-    before = {path: path.read_bytes() if path.exists() else None for path in paths}
-    try:
-        yield
-    except BaseException:
-        for path, content in before.items():
-            with contextlib.suppress(OSError):
-                if content is None:
-                    path.unlink(missing_ok=True)
-                else:
-                    path.write_bytes(content)
-        raise
-
-
-def json_bytes(content: Mapping[str, object]) -> bytes:
-    """Return plain data as the bytes of a JSON file."""
-    text = json_text(content, indent=1, ensure_ascii=False) + "\n"
-    return text.encode("utf-8", "backslashreplace")  # half a character of a foreign name is no reason to fail
-
-
-def json_text(content: Mapping[str, object], *, indent: int, ensure_ascii: bool = True) -> str:
-    """Return plain data as JSON; very much of it on one line, which is written twenty times as fast.
-
-    Args:
-        content: The data.
-        indent: By how much each level is indented.
-        ensure_ascii: Whether other characters are escaped.
-    """
-    task = content.get("task")
-    many = isinstance(task, dict) and len(task.get("targets", ())) > _MOST_INDENTED
-    return json.dumps(content, indent=None if many else indent, allow_nan=False, ensure_ascii=ensure_ascii)
-
-
-def prepare_directory(directory: str | os.PathLike[str], names: Iterable[str] = ()) -> None:
-    """Make a directory and see that files can be written there, before a search spends its time.
-
-    Args:
-        directory: The directory; it may be there.
-        names: Names of the files that are to be written.
-
-    Raises:
-        SynthError: Files cannot be written there.
-    """
-    directory = Path(directory)
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=directory):
-            pass
-        _see_that_files_can_be(directory / name for name in names)
-    except OSError as error:
-        raise _cannot_write(directory, error) from error
-
-
-def _see_that_files_can_be(paths: Iterable[Path]) -> None:
-    """Raise an error if something that is no file stands in the place of one."""
-    for path in paths:
-        if path.is_dir():
-            raise IsADirectoryError(errno.EISDIR, f"{path.name} is a directory, and a file is to be there")
-
-
-def _cannot_write(directory: Path, error: OSError) -> SynthError:
-    return SynthError(f"cannot write to {directory}: {error.strerror or error}")

@@ -134,9 +134,10 @@ def play(into: Path) -> dict[str, Any]:
             time.sleep(0.5)
             (into / "live-lock.jpg").write_bytes(tab.picture("jpeg"))
             arm.sending = False
-            tab.wait_for("document.querySelector('#live').innerText.includes('no marker is seen any more')")
+            tab.wait_for(f"{TITLE} === 'Nothing seen'")
             arm.sending = True
-            tab.wait_for("document.querySelector('#live').innerText.includes('8 markers')")
+            tab.wait_for(f"{TITLE} === 'Lock'")
+        tab.wait_for(f"{TITLE} === 'Nothing seen'")
         tab.wait_for("document.querySelector('#live').innerText.includes('trying again')")
         arm.share = 1.0
         before = time.monotonic()

@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from synth.export.files import Written, json_bytes, write_all
+from synth.export.files import Written
 from synth.export.inspection.json import inspections_to_json
 from synth.export.inspection.plot import draw_inspection
+from synth.export.json_data import json_bytes
+from synth.export.writing import write_all
 
 if TYPE_CHECKING:
     import os

@@ -65,7 +65,7 @@ function makeLive(content, state, view, act) {
   const switched = element("button", { type: "button", className: "quiet", text: "Sound on" });
   switched.onclick = () => (switched.textContent = sound.toggle() ? "Sound off" : "Sound on");
   const node = element("section", { id: "live" }, head, words, enlarged, dials, element("details", {}, element("summary", { text: "In full" }), full), source, switched);
-  const arm = content.shapes[0].arm, base = rigid(arm.joint1), live = { node, markers: {}, check: null, last: 0, frames: 0, delay: 0 };
+  const arm = content.shapes[0].arm, base = rigid(arm.joint1), live = { node, markers: {}, check: null, locked: null, connection: "", last: 0, frames: 0, delay: 0 };
 
   function tell(status, lock, title, message) {
     head.className = `verdict ${status}`;
@@ -74,7 +74,10 @@ function makeLive(content, state, view, act) {
 
   const TITLES = { lock: "Lock", correct: "Correct", best_possible: "Leave it", unusable: "Not to be used", moving: "Hold still" };
   function show(check) {
-    if (live.check && check.lock !== live.check.lock && check.status !== "moving") sound.tell(check.lock);
+    if (live.locked !== check.lock && check.status !== "moving") {
+      if (live.locked !== null) sound.tell(check.lock);
+      live.locked = check.lock;
+    }
     live.check = check;
     tell(check.status, check.lock, TITLES[check.status], check.message);
     words.textContent = check.correction ? check.correction.words : "";
@@ -90,8 +93,21 @@ function makeLive(content, state, view, act) {
     redraw();
   }
 
+  /** What was told is of a while ago: nobody is to lock by it. */
+  function forget(why) {
+    if (!live.check) return;
+    Object.assign(live, { check: null, markers: {} });
+    tell("waiting", false, "Nothing seen", why);
+    words.textContent = "";
+    enlarged.hidden = true;
+    dials.replaceChildren();
+    full.replaceChildren();
+    redraw();
+  }
+
   function told() {
     const lost = live.last && performance.now() - live.last > 1500;
+    if (lost || live.connection) forget(live.connection || "no marker is seen any more");
     const flow = !live.frames ? "no marker was seen yet" : lost ? "no marker is seen any more" : `${Object.keys(live.markers).length} markers, ${Math.max(0, 1000 * live.delay).toFixed(0)} ms old`;
     source.textContent = [live.connection, flow, live.source].filter(Boolean).join("; ");
   }
@@ -140,7 +156,7 @@ function makeLive(content, state, view, act) {
     }
     const arrow = live.arrow();
     if (arrow) {
-      const length = Math.max(ENLARGED * norm(arrow.way), 0.05);
+      const length = ENLARGED * norm(arrow.way);
       solid(needle, colours.missed, { pose: times(alongFrom(arrow.from, arrow.way), [length, 0, 0, 0, 0, length, 0, 0, 0, 0, length, 0, 0, 0, 0, 1]), flatness: 0.35 });
     }
   });
