@@ -52,6 +52,8 @@ def test_the_page_asks_no_network_for_anything():
     text = text.replace("http://www.w3.org/2000/svg", "")  # the name of a language, no address
     assert not re.findall(r"https?://|//\w+\.|@import|\bsrc=|<link(?! rel=\"icon\" href=\"data:)|url\(", text)
     assert "default-src 'none'" in text
+    assert "connect-src 'none'" in text
+    assert "EventSource" not in text
     assert "{{" not in text.replace("{{ rotation", "")
 
 

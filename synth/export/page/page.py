@@ -34,6 +34,7 @@ _SCRIPTS = (
     "live.js",
     "page.js",
 )
+_ONLY_LIVE = "live.js"
 
 
 def draw_page(solution: Solution, guide: Guide | None) -> bytes:
@@ -54,7 +55,7 @@ def page_of(content: Mapping[str, Any]) -> bytes:
     # In a script nothing but "<" can end it, or begin a comment.
     data = json.dumps(content, default=_listed, allow_nan=False, separators=(",", ":"))
     data = data.replace("<", "\\u003c")
-    filled = _template()
+    filled = _template(live="live" in content)
     for place, text in (("DATA", data), ("TITLE", html.escape(content["name"]))):  # a name may hold a place
         filled = filled.replace(f"{{{{{place}}}}}", text, 1)
     return filled.encode("utf-8", "backslashreplace")
@@ -66,11 +67,13 @@ def _listed(value: NDArray[Any]) -> object:
 
 
 @cache
-def _template() -> str:
-    """Return the page without title and data."""
+def _template(*, live: bool) -> str:
+    """Return the page without title and data; a live one may ask where it comes from, any other nobody."""
     folder = files("synth.export.page").joinpath("parts")
     text = folder.joinpath("page.html").read_text(encoding="utf-8")
-    for place, names in (("STYLE", _STYLES), ("SCRIPT", _SCRIPTS)):
+    text = text.replace("{{ASKED}}", "'self'" if live else "'none'", 1)
+    scripts = [name for name in _SCRIPTS if live or name != _ONLY_LIVE]
+    for place, names in (("STYLE", _STYLES), ("SCRIPT", scripts)):
         parts = "\n".join(folder.joinpath(name).read_text(encoding="utf-8") for name in names)
         text = text.replace(f"{{{{{place}}}}}", parts, 1)
     return text

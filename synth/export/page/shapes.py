@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 _SPACING = 0.01  # m, of the centreline that is drawn
 _MOST_OF_CENTRELINE = 500  # points: of a long link they are farther apart
-_DIGITS = 9  # of a metre: a nanometre
+_DIGITS = 6  # of a metre, of the line that is drawn
 
 
 def shape_content(solution: Solution, number: int, design: Design, drawn: NDArray[np.intp]) -> dict[str, Any]:
@@ -104,7 +104,7 @@ def _figures(design: Design) -> dict[str, str]:
     hand, margins = figures.forgiveness, figures.margins
     told |= {
         "by a hand, worst miss expected, mm": rounded_up(hand.expected_worst_miss),
-        "by a hand, all within at the first try": hand.chance_told,
+        "by a hand, all within at first": hand.chance_told.replace("less than", "<").replace("about ", ""),
         "largest swing of a joint, °": rounded_up(figures.largest_swing, Unit.DEG, 0),
         "joint 1 off its limits, °": rounded_down(margins.joint1, Unit.DEG, 0),
         "joint 2 off its limits, °": rounded_down(margins.joint2, Unit.DEG, 0),

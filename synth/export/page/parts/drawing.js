@@ -48,7 +48,7 @@ void main() {
   vec2 limited = step(highest - lowest, vec2(6.28));
   vec2 off = min(abs(turned - highest), abs(turned - lowest)) / width + 1e3 * (1.0 - limited);
   float edge = 1.0 - clamp(min(off.x, off.y) - 0.6, 0.0, 1.0);
-  float alpha = reachable ? 0.15 + 0.42 * rim + 0.16 * line + 0.5 * edge : beyond * (0.025 + 0.12 * rim + 0.05 * line);
+  float alpha = reachable ? 0.15 + 0.42 * rim + 0.16 * line + 0.5 * edge : beyond * (0.07 + 0.22 * rim + 0.10 * line);
   vec3 tint = reachable ? colour.rgb : vec3(0.55);
   shown = vec4(tint, alpha * colour.a);
 }`;
