@@ -67,7 +67,7 @@ def _what_to_do(check: Check) -> list[str]:
 
 def headline_sentence(check: Check) -> str:
     """Return what to do and why, as a sentence."""
-    chance, asked = _percent_down(check.probability), f"{check.confidence:.3g}"
+    chance, asked = _percent_down(check.probability), f"{100.0 * check.confidence:.3g} %"
     if check.verdict is Verdict.LOCK:
         return f"lock it: every target is within its tolerance with a chance of {chance} at least"
     if check.verdict is Verdict.CORRECT:
