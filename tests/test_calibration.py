@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from planted import ROBOT
+from planted import ROBOT, planted_arm
 from standing import SIGMA, standing
 
 from synth.geometry import SweptCircle
+from synth.measurement import StandingArm
 from synth.measurement.markers.calibration import calibrate
 
 LIMITS = ROBOT.joint_limits
@@ -97,3 +98,21 @@ def test_the_covariance_of_the_invariants_is_what_happens():
     ratio = np.std(drawn, axis=0, ddof=1) / np.sqrt(np.diag(told))
     assert (ratio > 0.6).all()
     assert (ratio < 1.5).all()
+
+
+def test_joints_that_are_followed_onto_the_wrong_branch_are_found_again():
+    # Axes some 6 deg apart: as the arm turns beneath a point, another angle of joint 2 becomes the closest.
+    rng = np.random.default_rng([33, 23])
+    wanted = StandingArm.of(planted_arm(rng), LIMITS.base.middle)
+    off, turned = (
+        size * way / np.linalg.norm(way)
+        for size, way in zip((10e-3, 0.07), rng.normal(size=(2, 3)), strict=True)
+    )
+    true = wanted.moved(np.concatenate([off, turned]))
+    joints = rng.uniform(
+        [LIMITS.base.lower, LIMITS.second.lower], [LIMITS.base.upper, LIMITS.second.upper], (200, 2)
+    )
+    points = true.forward(joints) + SIGMA * rng.normal(size=(200, 3))
+    found = calibrate(points, None, wanted, SIGMA)
+    assert not found.refusal
+    assert surface_off(found.arm, true) < 0.1e-3

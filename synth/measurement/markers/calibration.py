@@ -9,16 +9,14 @@ differences.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from synth.arrays import FloatArray, frozen, frozen_value
 from synth.geometry import Invariants, SweptCircle
-from synth.measurement.markers.standing_arm import rotation_matrix
-from synth.measurement.markers.standing_joints import joints_closest_to, joints_following
-from synth.robot import Interval, JointLimits
+from synth.measurement.markers.standing_joints import joints_closest_to
+from synth.measurement.markers.sweep_fit import SMALL, UNKNOWNS, changed, fit_sweep
 from synth.rounding import rounded_up, told_apart
 
 if TYPE_CHECKING:
@@ -27,15 +25,9 @@ if TYPE_CHECKING:
     from synth.measurement.markers.standing_arm import StandingArm
 
 SURFACE_RMS = 0.3e-3  # m; a calibration that promises no better than this is refused, unless told
-UNKNOWNS = 7
-_SMALL = 1e-6  # m and rad, of the differences
-_STEPS = 40
-_ARRIVED = 1e-7  # m and rad
-_NO_BETTER = 1e-4  # of chi-square
 _STARTS = 4
 _START_SPREAD = np.array([8e-3] * 3 + [0.06] * 3 + [2e-3])  # m and rad
 _OPEN = 1.0  # m and rad: what no point shows stays this uncertain
-_ANY_TURN = JointLimits(Interval(-1e3, 1e3), Interval(-1e3, 1e3))
 _OUTLIER = 4.5  # standard deviations
 _MOST_OUTLIERS = 0.1  # of the points
 _IMPLAUSIBLE = 1e-4
@@ -84,16 +76,6 @@ class Calibration:
         return changed(self.arm, (drawn * np.sqrt(np.maximum(values, 0.0))) @ vectors.T)
 
 
-def changed(arm: StandingArm, by: FloatArray) -> StandingArm:
-    """Return an arm with its circle changed, (..., 7): centre (m), rotation about it (rad), radius (m)."""
-    turn = rotation_matrix(by[..., 3:6])
-    frame = turn @ arm.frame
-    centre = arm.centre + by[..., :3]
-    return replace(
-        arm, frame=frame, end=centre - np.asarray(arm.offset) * frame[..., 0], radius=arm.radius + by[..., 6]
-    )
-
-
 def calibrate(
     points: FloatArray,
     joints: FloatArray | None,
@@ -123,7 +105,9 @@ def calibrate(
     used = np.ones(len(points), dtype=bool)
     while True:
         some = None if joints is None else joints[used]
-        fits = sorted((_fit(points[used], some, start, sigma) for start in starts), key=lambda fit: fit[2])
+        fits = sorted(
+            (fit_sweep(points[used], some, start, sigma) for start in starts), key=lambda fit: fit[2]
+        )
         arm, information, chi_square, misses = fits[0]
         numbers = int(used.sum()) * (1 if joints is None else 3)
         plausibility = float(
@@ -156,55 +140,6 @@ def calibrate(
     )
 
 
-def _misses(
-    arm: StandingArm, points: FloatArray, joints: FloatArray | None, near: FloatArray, steps: int = 3
-) -> tuple[FloatArray, FloatArray]:
-    """Return misses, shape (..., n, 3), m, and the joints there: those given, or the best near some."""
-    if joints is None:
-        there = joints_following(arm, near, points, steps)
-        return arm.forward(there) - points, there
-    return arm.forward(np.broadcast_to(joints, (*arm.end.shape[:-1], *joints.shape))) - points, joints
-
-
-def _fit(
-    points: FloatArray, joints: FloatArray | None, arm: StandingArm, sigma: float
-) -> tuple[StandingArm, FloatArray, float, FloatArray]:
-    """Return the best arm near a start, its information, chi-square, and the misses of the points, m."""
-    limits, arm = arm.limits, replace(arm, limits=_ANY_TURN)
-    steps = np.vstack([np.zeros(UNKNOWNS), _SMALL * np.eye(UNKNOWNS), -_SMALL * np.eye(UNKNOWNS)])
-    damping = 1e-3
-    for _ in range(_STEPS):
-        # Anew each time: where axes are nearly parallel another branch becomes the closest.
-        near = joints_closest_to(arm, points) if joints is None else joints
-        rows, _ = _misses(changed(arm, steps), points, joints, near)
-        miss, slope = rows[0].ravel() / sigma, _slope(rows) / sigma
-        information, gradient = slope @ slope.T, slope @ miss
-        step = -np.linalg.solve(information + damping * np.eye(UNKNOWNS) / _SMALL, gradient)
-        step *= min(1.0, 0.3 / max(float(np.abs(step).max()), 1e-30))
-        tried = changed(arm, step)
-        then, _ = _misses(tried, points, joints, near)
-        before, after = float(miss @ miss), float(np.sum(then**2)) / sigma**2
-        if after <= before:
-            arm, damping = tried, 0.1 * damping
-            # Where zeros of joints stay open the steps along them never end; what fits no better has arrived.
-            if np.abs(step).max() < _ARRIVED or before - after < _NO_BETTER:
-                break
-        else:
-            damping = 30.0 * max(damping, 1e-12)
-            if damping > 1e6:
-                break
-    rows, _ = _misses(changed(arm, steps), points, joints, near, 8)
-    slope = _slope(rows) / sigma
-    information, lengths = slope @ slope.T, np.linalg.norm(rows[0], axis=-1)
-    return replace(arm, limits=limits), information, float(np.sum((lengths / sigma) ** 2)), lengths
-
-
-def _slope(rows: FloatArray) -> FloatArray:
-    """Return the derivative of misses, shape (7, 3 n), from those at small changes either way."""
-    ahead, behind = rows[1 : UNKNOWNS + 1], rows[UNKNOWNS + 1 :]
-    return np.asarray((ahead - behind).reshape(UNKNOWNS, -1) / (2.0 * _SMALL))
-
-
 def _surface_rms(arm: StandingArm, covariance: FloatArray) -> float:
     """Return the expected distance of the surface from the true one, root mean square by area, m."""
     second = np.linspace(arm.limits.second.lower, arm.limits.second.upper, _SECONDS)
@@ -213,9 +148,9 @@ def _surface_rms(arm: StandingArm, covariance: FloatArray) -> float:
     normal = np.cross(velocities[..., 0], velocities[..., 1])
     area = np.linalg.norm(normal, axis=-1)
     normal /= np.maximum(area, 1e-12)[:, None]
-    steps = _SMALL * np.vstack([np.eye(UNKNOWNS), -np.eye(UNKNOWNS)])
+    steps = SMALL * np.vstack([np.eye(UNKNOWNS), -np.eye(UNKNOWNS)])
     moved = changed(arm, steps).forward(np.broadcast_to(joints, (2 * UNKNOWNS, *joints.shape)))
-    by = np.einsum("knj,nj->kn", (moved[:UNKNOWNS] - moved[UNKNOWNS:]) / (2.0 * _SMALL), normal)
+    by = np.einsum("knj,nj->kn", (moved[:UNKNOWNS] - moved[UNKNOWNS:]) / (2.0 * SMALL), normal)
     variances = np.einsum("kn,kl,ln->n", by, covariance, by)
     return float(np.sqrt(np.sum(area * variances) / np.sum(area)))
 
@@ -227,7 +162,7 @@ def _of_invariants(arm: StandingArm, covariance: FloatArray) -> FloatArray:
         five = Invariants.from_circle(_circle(changed(arm, by)))
         return np.array([five.a, five.alpha, five.z0, five.h, five.R])
 
-    slope = np.array([(numbers(e) - numbers(-e)) / (2.0 * _SMALL) for e in _SMALL * np.eye(UNKNOWNS)])
+    slope = np.array([(numbers(e) - numbers(-e)) / (2.0 * SMALL) for e in SMALL * np.eye(UNKNOWNS)])
     return np.asarray(slope.T @ covariance @ slope)
 
 
