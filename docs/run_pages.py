@@ -83,6 +83,12 @@ def workplace() -> Iterator[None]:
             os.chdir(before)
 
 
+def code_of(page: Path) -> str:
+    """Return all Python code of a page, from top to bottom."""
+    blocks = _BLOCK.findall(page.read_text(encoding="utf-8"))
+    return "\n".join(text for language, _, text in blocks if language == "python")
+
+
 def run_page(page: Path) -> list[Shown]:
     """Run all code and all commands of a page from top to bottom; return what it shows of the commands."""
     names: dict[str, object] = {}

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from synth.geometry import Box, Capsule, Category, Invariants, Sphere, WorkspaceSurface
     from synth.guide import Guide, make_guide
     from synth.measurement import Inspection, Measurement, inspect, load_measurements
+    from synth.paths import Interpolation, Path
     from synth.robot import (
         PRESETS,
         Arm,
@@ -52,6 +53,7 @@ if TYPE_CHECKING:
 
     # isort: split - else mypy takes `solve` for the module that it stands in
     from synth.solution_file import load_solution, solution_from_json, solution_schema
+    from synth.surfaces import Profile, Rectangle, Revolved, Scan, Surface, TriangleMesh
     from synth.sweep import SweepProgress, TaskOutcome, solve_many
     from synth.synthesis import (
         Bound,
@@ -76,6 +78,7 @@ if TYPE_CHECKING:
     )
     from synth.task import (
         Approach,
+        Floor,
         Objective,
         Obstacle,
         PointTarget,
@@ -86,6 +89,7 @@ if TYPE_CHECKING:
         load_task,
         parse_task,
         robot_schema,
+        sampled,
         task_schema,
     )
     from synth.trajectories import Trajectory, trajectory
@@ -96,20 +100,22 @@ _ROOMS = {
     "geometry": "Box Capsule Category Invariants Sphere WorkspaceSurface",
     "guide": "Guide make_guide",
     "measurement": "Inspection Measurement inspect load_measurements",
+    "paths": "Interpolation Path",
     "robot": (
         "PRESETS Arm BaseChoices BasePose BaseRange Interval JointBranches JointLimits LinkShape "
         "MalleableLink RigidLink RigidLinkChoices Robot SurfaceMesh Workspace keeps_clear link_to_pose "
         "links_to_poses why_no_link"
     ),
     "solution_file": "load_solution solution_from_json solution_schema",
+    "surfaces": "Profile Rectangle Revolved Scan Surface TriangleMesh",
     "sweep": "TaskOutcome SweepProgress solve_many",
     "synthesis": (
         "Bound Design Figures Forgiveness Margins Motion NotFoundError Progress Release Solution Status "
         "TargetResult Timing Verification Violation explain motions solve verify"
     ),
     "task": (
-        "Approach Objective Obstacle PointTarget TargetTable Task Topology load_robot load_task "
-        "parse_task robot_schema task_schema"
+        "Approach Floor Objective Obstacle PointTarget TargetTable Task Topology load_robot load_task "
+        "parse_task robot_schema sampled task_schema"
     ),
     "trajectories": "Trajectory trajectory",
 }
@@ -128,11 +134,13 @@ __all__ = [
     "Category",
     "Design",
     "Figures",
+    "Floor",
     "Forgiveness",
     "GeometryError",
     "Guide",
     "InputError",
     "Inspection",
+    "Interpolation",
     "Interval",
     "Invariants",
     "JointBranches",
@@ -146,16 +154,22 @@ __all__ = [
     "NotFoundError",
     "Objective",
     "Obstacle",
+    "Path",
     "PointTarget",
+    "Profile",
     "Progress",
+    "Rectangle",
     "Release",
+    "Revolved",
     "RigidLink",
     "RigidLinkChoices",
     "Robot",
+    "Scan",
     "Solution",
     "SolverError",
     "Sphere",
     "Status",
+    "Surface",
     "SurfaceMesh",
     "SweepProgress",
     "SynthError",
@@ -167,6 +181,7 @@ __all__ = [
     "Timing",
     "Topology",
     "Trajectory",
+    "TriangleMesh",
     "Verification",
     "Violation",
     "Workspace",
@@ -187,6 +202,7 @@ __all__ = [
     "motions",
     "parse_task",
     "robot_schema",
+    "sampled",
     "solution_from_json",
     "solution_schema",
     "solution_to_json",

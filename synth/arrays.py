@@ -3,14 +3,38 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from math import isnan
-from typing import Any, TypeVar, dataclass_transform
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, dataclass_transform
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 FloatArray = NDArray[np.float64]
 _T = TypeVar("_T")
+_Given_contra = TypeVar("_Given_contra", contravariant=True)
+_Held_co = TypeVar("_Held_co", covariant=True)
 _HASHED = 16  # numbers or entries that enter a hash
+
+
+class Given(Generic[_Given_contra, _Held_co]):
+    """The type of a field that is given as one type and held as another, which `__post_init__` makes of it.
+
+    It stands in annotations only, for type checkers: to them it is a descriptor, and a constructor takes
+    what a descriptor can be set to. So lists and numbers are taken where arrays and intervals are held.
+    """
+
+    if TYPE_CHECKING:
+
+        def __get__(self, value: object, owner: type | None = None, /) -> _Held_co: ...
+        def __set__(self, value: object, given: _Given_contra, /) -> None: ...
+
+
+GivenArray = Given[ArrayLike, FloatArray]
+GivenArrayOrNone = Given[ArrayLike | None, FloatArray | None]
+
+
+def given(**how: Any) -> Any:
+    """Return a field with a default, declared as `Given`: as `field`, of whatever type."""
+    return field(**how)
 
 
 def frozen(values: ArrayLike) -> FloatArray:
@@ -20,7 +44,7 @@ def frozen(values: ArrayLike) -> FloatArray:
     return array
 
 
-@dataclass_transform(frozen_default=True, eq_default=False, field_specifiers=(field,))
+@dataclass_transform(frozen_default=True, eq_default=False, field_specifiers=(field, given))
 def frozen_value(cls: type[_T]) -> type[_T]:
     """Make a class that may hold arrays a frozen dataclass that is compared by value."""
     return compared_by_value(dataclass(frozen=True, eq=False)(cls))

@@ -1,6 +1,8 @@
 """No prose that a machine does not check: code on the pages runs, commands answer what the pages show."""
 
+import os
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -12,7 +14,7 @@ from synth.cli import main
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "docs"))
 
-from run_pages import Shown, pages, run_page  # noqa: E402 - after the path
+from run_pages import Shown, code_of, pages, run_page  # noqa: E402 - after the path
 
 PAGES = pages()
 BUILT = {"gallery"}  # folders of pages that only the site has
@@ -41,6 +43,22 @@ def test_an_answer_that_is_not_the_real_one_is_seen():
     assert Shown(0, "", told, answer, like=True).agrees
     assert not Shown(0, "", told, answer, like=False).agrees
     assert not Shown(0, "", told.replace("miss", "gap"), answer, like=True).agrees
+
+
+def test_a_strict_type_checker_accepts_the_code_of_all_pages_and_values_from_lists(tmp_path):
+    pytest.importorskip("mypy", reason="of the extra dev")
+    for page in PAGES:
+        (tmp_path / f"{named(page).replace('/', '_').replace('-', '_')}.py").write_text(code_of(page))
+    (tmp_path / "built_values.py").write_text((ROOT / "tests/built_values.py").read_text())
+    checked = subprocess.run(
+        [sys.executable, "-m", "mypy", "--config-file", ROOT / "pyproject.toml", *tmp_path.glob("*.py")],
+        cwd=tmp_path,
+        check=False,
+        env={**os.environ, "MYPYPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+    )
+    assert checked.returncode == 0, checked.stdout + checked.stderr
 
 
 def tasks_shown():

@@ -2,6 +2,7 @@
 
 import math
 
+import built_values
 import numpy as np
 import pytest
 from command import invoked
@@ -176,3 +177,30 @@ def test_no_number_of_seconds_is_nan():
     result = invoked("solve", "task.yaml", "--time-limit", "nan")
     assert result.exit_code == 2
     assert "not a number" in result.output
+
+
+def arrays_in(value):
+    for name in getattr(value, "__dataclass_fields__", ()):
+        held = getattr(value, name)
+        if isinstance(held, np.ndarray):
+            yield f"{type(value).__name__}.{name}", held
+        for each in held if isinstance(held, tuple) else [held]:
+            yield from arrays_in(each)
+
+
+def test_whatever_arrays_values_are_built_from_they_hold_copies_that_nobody_writes_to():
+    held = [
+        each
+        for value in vars(built_values).values()
+        for one in (value if isinstance(value, list) else [value])
+        for each in arrays_in(one)
+    ]
+    assert len({name for name, _ in held}) >= 15
+    for name, each in held:
+        assert not each.flags.writeable, name
+        assert not np.shares_memory(each, built_values.array), name
+        assert each.dtype == np.float64, name
+    assert built_values.table[0].approach is not None
+    assert built_values.table[1].approach is None
+    with pytest.raises(InputError, match="must be 2 x 4 numbers"):
+        TargetTable(["a", "b"], np.eye(3)[:2], [1, 1], [1, 1], [[0, 0, 1, 0.1]])

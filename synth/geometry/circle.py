@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal, Self
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen, frozen_value
+from synth.arrays import FloatArray, GivenArray, frozen, frozen_value
 from synth.errors import GeometryError
 from synth.geometry.closest_angles import closest_angles
 from synth.geometry.distances import ArmDistances, realise, squared_distances
@@ -29,8 +29,8 @@ class CircleAboutAxis:
         GeometryError: If the axis has no direction or the radius is negative.
     """
 
-    centre: FloatArray
-    axis: FloatArray
+    centre: GivenArray
+    axis: GivenArray
     radius: float
 
     def __post_init__(self) -> None:
@@ -74,7 +74,6 @@ class CircleAboutAxis:
         return np.asarray(self.centre + self.radius * across)
 
 
-@frozen_value
 class SweptCircle(CircleAboutAxis):
     """Axis 2 and the circle of P5 about it, in the base frame (axis 1 is z, P1 the origin).
 

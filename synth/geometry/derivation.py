@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from itertools import combinations_with_replacement
 from pathlib import Path
 
-import sympy  # type: ignore[import-untyped]  # sympy ships no types
+import sympy
 from sympy import Expr, Matrix, Symbol
 
 ARGUMENTS = ("s12", "s13", "s14", "s23", "s24", "s34", "s35", "s45")

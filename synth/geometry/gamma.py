@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen, frozen_value
+from synth.arrays import FloatArray, GivenArray, frozen, frozen_value
 from synth.errors import GeometryError
 from synth.geometry._gamma_polynomials import workspace_polynomials
 from synth.geometry.distances import ArmDistances, cayley_menger
@@ -35,7 +35,7 @@ class WorkspaceSurface:
     """
 
     d12: float
-    q: FloatArray
+    q: GivenArray
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "q", frozen(self.q))

@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen_value
+from synth.arrays import FloatArray, GivenArray, frozen_value
 from synth.checks import Checks
 from synth.geometry.rotations import roll_pitch_yaw, rotation_of
 
@@ -27,7 +27,7 @@ class Sphere:
         radius: Its radius, m.
     """
 
-    centre: FloatArray
+    centre: GivenArray
     radius: float
 
     def __post_init__(self) -> None:
@@ -69,7 +69,7 @@ class Capsule:
         radius: The radius, m.
     """
 
-    ends: FloatArray
+    ends: GivenArray
     radius: float
 
     def __post_init__(self) -> None:
@@ -122,8 +122,8 @@ class Box:
         roll: Rotation about the x axis, rad.
     """
 
-    centre: FloatArray
-    size: FloatArray
+    centre: GivenArray
+    size: GivenArray
     yaw: float = 0.0
     pitch: float = 0.0
     roll: float = 0.0

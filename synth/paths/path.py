@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen, frozen_value
+from synth.arrays import FloatArray, Given, GivenArray, frozen, frozen_value, given
 from synth.checks import SMALLEST, Checks
 
 if TYPE_CHECKING:
@@ -45,9 +45,9 @@ class Path:
     """
 
     name: str
-    waypoints: FloatArray
+    waypoints: GivenArray
     closed: bool = False
-    interpolation: Interpolation = Interpolation.STRAIGHT
+    interpolation: Given[Interpolation | str, Interpolation] = given(default=Interpolation.STRAIGHT)
     tolerance: float = 1e-3
     speed: float | None = None
 

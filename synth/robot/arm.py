@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen, frozen_value
+from synth.arrays import FloatArray, GivenArray, frozen, frozen_value
 from synth.robot.arm_in_shape import ArmInShape
 from synth.robot.closed_form import ClosedForm
 from synth.robot.closest_joints import closest_joints
@@ -30,8 +30,8 @@ class JointBranches:
             infinite where there is no such branch or the joint limits forbid it.
     """
 
-    joints: FloatArray
-    miss: FloatArray
+    joints: GivenArray
+    miss: GivenArray
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "joints", frozen(self.joints))

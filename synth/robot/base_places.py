@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen, frozen_value
+from synth.arrays import FloatArray, frozen, frozen_value, given
 from synth.checks import Checks, wrong_type
 from synth.names import given_twice
 from synth.robot.base_pose import BasePose
-from synth.robot.hardware import Interval, check_interval, into_turn
+from synth.robot.hardware import GivenInterval, Interval, check_interval, into_turn
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,7 +24,7 @@ _ANGLES = 3  # in a row (x, y, z, roll, pitch, yaw) the first of them
 _FULL = 1e-9  # rad; a range that is short of a full turn by this is one
 
 
-@dataclass(frozen=True)
+@frozen_value
 class BaseRange:
     """Ranges of the base's pose, each of its numbers on its own; see `BasePose`.
 
@@ -37,12 +37,12 @@ class BaseRange:
         yaw: About the vertical, after both, rad.
     """
 
-    x: Interval = _ZERO
-    y: Interval = _ZERO
-    z: Interval = _ZERO
-    roll: Interval = _ZERO
-    pitch: Interval = _ZERO
-    yaw: Interval = _ZERO
+    x: GivenInterval = given(default=_ZERO)
+    y: GivenInterval = given(default=_ZERO)
+    z: GivenInterval = given(default=_ZERO)
+    roll: GivenInterval = given(default=_ZERO)
+    pitch: GivenInterval = given(default=_ZERO)
+    yaw: GivenInterval = given(default=_ZERO)
 
     def __post_init__(self) -> None:
         checks = Checks(self)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen, frozen_value
+from synth.arrays import FloatArray, GivenArray, frozen, frozen_value, given
 from synth.checks import Checks
 from synth.geometry import rotation_of
 
@@ -30,7 +29,7 @@ class BasePose:
             along -y, 180 deg on a ceiling.
     """
 
-    position: FloatArray = field(default_factory=lambda: np.zeros(3))
+    position: GivenArray = given(default_factory=lambda: np.zeros(3))
     yaw: float = 0.0
     pitch: float = 0.0
     roll: float = 0.0

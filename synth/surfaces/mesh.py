@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen, frozen_value
+from synth.arrays import FloatArray, GivenArray, GivenArrayOrNone, frozen, frozen_value, given
 from synth.checks import Checks
 from synth.surfaces.cells import Cells
 
@@ -28,7 +28,7 @@ class TriangleMesh:
         corners: Corners of each, anticlockwise as seen from outside, shape (m, 3, 3), m.
     """
 
-    corners: FloatArray
+    corners: GivenArray
     has_boundary = True
 
     def __post_init__(self) -> None:
@@ -116,8 +116,8 @@ class Scan:
         areas: What each stands for, shape (n,); all alike by default.
     """
 
-    points: FloatArray
-    areas: FloatArray | None = None
+    points: GivenArray
+    areas: GivenArrayOrNone = given(default=None)
     has_boundary = False
 
     def __post_init__(self) -> None:

@@ -12,7 +12,7 @@ from enum import Enum
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen_value
+from synth.arrays import FloatArray, GivenArray, frozen_value
 from synth.checks import Checks
 from synth.surfaces.cells import Cells
 
@@ -174,7 +174,7 @@ class Rectangle:
         has_boundary: Whether these are its own, and not only where a plane without end is cut off.
     """
 
-    size: FloatArray
+    size: GivenArray
     has_boundary: bool = True
 
     def __post_init__(self) -> None:

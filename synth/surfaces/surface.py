@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen_value
+from synth.arrays import FloatArray, Given, GivenArray, frozen_value, given
 from synth.checks import SMALLEST, Checks, wrong_type
 from synth.geometry import Box, Capsule, Solid, Sphere, rotation_of
 from synth.surfaces.mesh import Scan, TriangleMesh
@@ -46,9 +45,9 @@ class Surface:
     shape: Shape
     tolerance: float = 1e-3
     coverage: float = 1.0
-    position: FloatArray = field(default_factory=lambda: np.zeros(3))
-    rpy: FloatArray = field(default_factory=lambda: np.zeros(3))
-    region: tuple[Solid, ...] = ()
+    position: GivenArray = given(default_factory=lambda: np.zeros(3))
+    rpy: GivenArray = given(default_factory=lambda: np.zeros(3))
+    region: Given[Sequence[Solid], tuple[Solid, ...]] = given(default=())
     margin: float = 0.0
 
     def __post_init__(self) -> None:

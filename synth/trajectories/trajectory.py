@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen, frozen_value
+from synth.arrays import FloatArray, GivenArray, frozen, frozen_value
 from synth.checks import refuse_unless, wrong_number
 from synth.errors import InputError, Mistake, SynthError
 from synth.synthesis import MOST_MOTIONS, Solution, motions
@@ -39,10 +39,10 @@ class Trajectory:
         stops: When each target is reached, by its name, s.
     """
 
-    times: FloatArray
-    positions: FloatArray
-    velocities: FloatArray
-    accelerations: FloatArray
+    times: GivenArray
+    positions: GivenArray
+    velocities: GivenArray
+    accelerations: GivenArray
     stops: Mapping[str, float]
 
     def __post_init__(self) -> None:

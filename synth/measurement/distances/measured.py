@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen, frozen_value
+from synth.arrays import GivenArray, GivenArrayOrNone, frozen, frozen_value, given
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -61,10 +61,10 @@ class MeasuredDistances:
     """
 
     pairs: NDArray[np.intp]
-    values: FloatArray
-    sigma: FloatArray
-    lower: FloatArray
-    upper: FloatArray
+    values: GivenArray
+    sigma: GivenArray
+    lower: GivenArray
+    upper: GivenArray
 
     def __post_init__(self) -> None:
         pairs = np.array(self.pairs, dtype=np.intp).reshape(-1, 2)
@@ -164,7 +164,7 @@ class Measurement:
     robot: Robot
     precision: Precision
     distances: MeasuredDistances
-    markers: FloatArray | None = None
+    markers: GivenArrayOrNone = given(default=None)
     intended: Category | None = None
 
     @property

@@ -2,12 +2,13 @@
 
 from synth.robot.hardware.about_axis_1 import into_turn, turned
 from synth.robot.hardware.hardware import JointLimits, MalleableLink, Robot
-from synth.robot.hardware.interval import Interval, check_interval
+from synth.robot.hardware.interval import GivenInterval, Interval, check_interval
 from synth.robot.hardware.presets import PRESETS
 from synth.robot.hardware.rigid_links import RigidLink, RigidLinkChoices, no_triangle
 
 __all__ = [
     "PRESETS",
+    "GivenInterval",
     "Interval",
     "JointLimits",
     "MalleableLink",

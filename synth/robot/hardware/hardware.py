@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.arrays import frozen_value, given
 from synth.checks import Checks
-from synth.robot.hardware.interval import Interval, check_interval, check_lengths
+from synth.robot.hardware.interval import GivenInterval, Interval, check_interval, check_lengths
 from synth.robot.hardware.rigid_links import RigidLink, RigidLinkChoices, no_triangle
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ _FULL_TURN_OF_BASE = Interval(-math.pi, math.pi)
 _FULL_TURN_OF_SECOND = Interval(0.0, 2.0 * math.pi)
 
 
-@dataclass(frozen=True)
+@frozen_value
 class MalleableLink:
     """The link that is softened, bent by hand and stiffened again.
 
@@ -34,7 +34,7 @@ class MalleableLink:
         max_total_bend: Largest total bend, the integral of |curvature| along the link, rad.
     """
 
-    length: Interval
+    length: GivenInterval
     min_bend_radius: float
     diameter: float = 0.0
     max_total_bend: float = math.inf
@@ -53,7 +53,7 @@ class MalleableLink:
         return 1.0 / self.min_bend_radius
 
 
-@dataclass(frozen=True)
+@frozen_value
 class JointLimits:
     """Ranges of the two joints, rad.
 
@@ -62,8 +62,8 @@ class JointLimits:
         second: Range of theta2; 0 is folded back onto the malleable link, pi is straight on.
     """
 
-    base: Interval = _FULL_TURN_OF_BASE
-    second: Interval = _FULL_TURN_OF_SECOND
+    base: GivenInterval = given(default=_FULL_TURN_OF_BASE)
+    second: GivenInterval = given(default=_FULL_TURN_OF_SECOND)
 
     def __post_init__(self) -> None:
         checks = Checks(self)
@@ -78,7 +78,7 @@ class JointLimits:
         return np.asarray(((joints >= lower) & (joints <= upper)).all(axis=-1))
 
 
-@dataclass(frozen=True)
+@frozen_value
 class Robot:
     """The hardware of a 2-DOF malleable robot. All lengths in metres, all angles in radians.
 

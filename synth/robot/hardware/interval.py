@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+from synth.arrays import FloatArray, Given
 from synth.checks import LARGEST, Checks, described, numbers_in, wrong_number
 from synth.errors import InputError
 from synth.rounding import written_apart
@@ -56,6 +58,9 @@ class Interval:
     def contains(self, value: float, slack: float = 0.0) -> bool:
         """Whether `value` lies in the interval widened by `slack` at both ends."""
         return self.lower - slack <= value <= self.upper + slack
+
+
+GivenInterval = Given[Interval | float | Sequence[float] | FloatArray, Interval]
 
 
 def check_interval(checks: Checks, value: object, key: str) -> bool:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from synth.arrays import frozen_value
 from synth.checks import Checks, wrong_name, wrong_type
 from synth.names import given_twice
-from synth.robot.hardware.interval import Interval, check_lengths
+from synth.robot.hardware.interval import GivenInterval, check_lengths
 from synth.rounding import written_apart
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ _FLAT = 1e-9  # of d34: a triangle that is flat but for rounding is one
 _SAME = 1e-6  # m; rigid links whose d35 and d45 differ by no more are one
 
 
-@dataclass(frozen=True)
+@frozen_value
 class RigidLink:
     """The link from the second joint to the end effector, as distances to the axis points.
 
@@ -27,8 +27,8 @@ class RigidLink:
         diameter: Its outer diameter, m, where it may touch obstacles or the malleable link.
     """
 
-    d35: Interval
-    d45: Interval
+    d35: GivenInterval
+    d45: GivenInterval
     diameter: float = 0.0
 
     def __post_init__(self) -> None:
@@ -44,7 +44,7 @@ class RigidLink:
         return self.d35.is_fixed and self.d45.is_fixed
 
 
-@dataclass(frozen=True)
+@frozen_value
 class RigidLinkChoices:
     """A catalogue of rigid links, each of given lengths, of which the synthesis chooses one.
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen_value
+from synth.arrays import FloatArray, GivenArray, frozen_value
 from synth.checks import Checks
 from synth.rounding import rounded_down
 
@@ -97,8 +97,8 @@ class LinkShape:
         lengths: Length of each arc, shape (m,), m.
     """
 
-    curvatures: FloatArray
-    lengths: FloatArray
+    curvatures: GivenArray
+    lengths: GivenArray
 
     def __post_init__(self) -> None:
         checks = Checks(self)

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen, frozen_value
-from synth.checks import LONGEST_NAME, SMALLEST, Checks, described, wrong_name
+from synth.arrays import FloatArray, GivenArray, GivenArrayOrNone, frozen, frozen_value, given
+from synth.checks import LONGEST_NAME, SMALLEST, Checks, described, numbers_in, wrong_name
 from synth.names import given_twice
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ class Approach:
         tolerance: Largest angle between the two that counts as arrived, rad.
     """
 
-    direction: FloatArray
+    direction: GivenArray
     tolerance: float = DEFAULT_APPROACH_TOLERANCE
 
     def __post_init__(self) -> None:
@@ -58,7 +58,7 @@ class PointTarget:
     """
 
     name: str
-    position: FloatArray
+    position: GivenArray
     tolerance: float = DEFAULT_TOLERANCE
     weight: float = 1.0
     approach: Approach | None = None
@@ -97,10 +97,10 @@ class TargetTable(Sequence[PointTarget]):
     """
 
     names: Sequence[str]
-    positions: FloatArray
-    tolerances: FloatArray
-    weights: FloatArray
-    approaches: FloatArray | None = None
+    positions: GivenArray
+    tolerances: GivenArray
+    weights: GivenArray
+    approaches: GivenArrayOrNone = given(default=None)
     samples: NDArray[np.intp] | None = None
 
     def __post_init__(self) -> None:
@@ -111,6 +111,12 @@ class TargetTable(Sequence[PointTarget]):
         checks.array("positions", (count, 3), rows="targets[{}].position")
         checks.array("tolerances", (count,), least=SMALLEST, rows="targets[{}].tolerance")
         checks.array("weights", (count,), least=SMALLEST, rows="targets[{}].weight")
+        if self.approaches is not None:
+            rows = numbers_in(self.approaches)  # with NaN, which other arrays must not hold
+            if rows is None or rows.shape != (count, 4):
+                checks.report("approaches", f"must be {count} x 4 numbers")
+            else:
+                checks.put("approaches", frozen(rows))
         checks.refuse()
 
     @cached_property

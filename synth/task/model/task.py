@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from synth.arrays import FloatArray, frozen, frozen_value
+from synth.arrays import FloatArray, Given, frozen, frozen_value, given
 from synth.checks import Checks, described, wrong_type
 from synth.names import given_twice
 from synth.paths import Path
@@ -66,13 +66,13 @@ class Task(Standing):
     targets: Sequence[PointTarget]
     base: BasePose = field(default_factory=BasePose)
     floor: float | Floor | None = Floor.AT_BASE
-    topology: Topology = Topology.ANY
-    objective: Objective = Objective.LEAST_SQUARES
-    obstacles: tuple[Obstacle, ...] = ()
+    topology: Given[Topology | str, Topology] = given(default=Topology.ANY)
+    objective: Given[Objective | str, Objective] = given(default=Objective.LEAST_SQUARES)
+    obstacles: Given[Sequence[Obstacle], tuple[Obstacle, ...]] = given(default=())
     current: LinkShape | None = None
     places: BasePlaces | None = None
-    surfaces: tuple[Surface, ...] = ()
-    paths: tuple[Path, ...] = ()
+    surfaces: Given[Sequence[Surface], tuple[Surface, ...]] = given(default=())
+    paths: Given[Sequence[Path], tuple[Path, ...]] = given(default=())
 
     def __post_init__(self) -> None:
         checks = Checks(self)
