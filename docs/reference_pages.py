@@ -37,11 +37,12 @@ UNITS = (
         ("yaw_deg", "rpy_deg", "tolerance_deg", "joint1_deg", "base", "second", "max_total_bend_deg"), "deg"
     )
     | {"curvature": "1/length", "speed": "length/s"}
+    | {"max_speed_deg_s": "deg/s", "max_acceleration_deg_s2": "deg/s^2"}
 )
 PLAIN = [  # keys of words, counts and parts, which have no unit
     "synth", "name", "length_unit", "robot", "targets", "weight", "surface", "points", "topology",
     "objective", "obstacles", "sphere", "box", "capsule", "current", "arcs", "markers", "link",
-    "rigid_link", "joint_limits_deg", "intended", "distances", "configurations", "choices", "approach",
+    "rigid_link", "joint_limits_deg", "joint_rates", "intended", "distances", "configurations", "choices", "approach",
     "direction", "mesh", "cylinder", "torus", "rectangle", "disc", "plane", "pose", "region", "side", "coverage",
     "axis", "normal", "along", "path", "csv", "closed", "interpolation",
 ]  # fmt: skip
@@ -147,6 +148,9 @@ tip_offset: 24.5
 d34: 49
 rigid_link: {d35: 455, d45: 460, diameter: 20}
 joint_limits_deg: {base: [10, 350], second: [53, 307]}
+joint_rates:
+  base: {max_speed_deg_s: 150, max_acceleration_deg_s2: 500}
+  second: {max_speed_deg_s: 120, max_acceleration_deg_s2: 400}
 """
 ROBOT_LENGTHS = """\
 name: my robot
@@ -291,7 +295,7 @@ def _default(path: str, field: typing.Any) -> str:
 def unit_of(path: str) -> str:
     """Return the unit of a key: "length" is the unit that the file states. Raises KeyError for a key not known here."""
     key = path.rpartition(".")[2]
-    if path == "base":
+    if path in {"base", "joint_rates.base", "joint_rates.second"}:
         return ""
     if key == "one_of":
         return "" if path == "rigid_link.one_of" else "length"

@@ -38,6 +38,7 @@ if TYPE_CHECKING:
         Interval,
         JointBranches,
         JointLimits,
+        JointRates,
         LinkShape,
         MalleableLink,
         RigidLink,
@@ -102,9 +103,9 @@ _ROOMS = {
     "measurement": "Inspection Measurement inspect load_measurements",
     "paths": "Interpolation Path",
     "robot": (
-        "PRESETS Arm BaseChoices BasePose BaseRange Interval JointBranches JointLimits LinkShape "
-        "MalleableLink RigidLink RigidLinkChoices Robot SurfaceMesh Workspace keeps_clear link_to_pose "
-        "links_to_poses why_no_link"
+        "PRESETS Arm BaseChoices BasePose BaseRange Interval JointBranches JointLimits JointRates "
+        "LinkShape MalleableLink RigidLink RigidLinkChoices Robot SurfaceMesh Workspace keeps_clear "
+        "link_to_pose links_to_poses why_no_link"
     ),
     "solution_file": "load_solution solution_from_json solution_schema",
     "surfaces": "Profile Rectangle Revolved Scan Surface TriangleMesh",
@@ -145,6 +146,7 @@ __all__ = [
     "Invariants",
     "JointBranches",
     "JointLimits",
+    "JointRates",
     "LinkShape",
     "MalleableLink",
     "Margins",

@@ -6,6 +6,7 @@ import synth
 
 array = np.array([0, 0, 1])
 
+rates = synth.JointRates(2, (1, 2))
 link = synth.MalleableLink([0.55, 0.7], 0.11, 0.05)
 robot = synth.Robot(
     "mine",

@@ -14,7 +14,7 @@ from solutions import solution_document
 import synth
 from synth.errors import InputError
 from synth.export import json_bytes, solution_to_json
-from synth.robot import RigidLink
+from synth.robot import JointRates, RigidLink
 from synth.solution_file import load_solution, solution_schema
 from synth.solution_file.schema import SolutionFile
 from synth.synthesis import Solution, Status, explain, showing, solve
@@ -23,7 +23,11 @@ from synth.task import Objective, Topology
 
 def _free_rigid_link():
     task, arm = planted_task(7, 4)
-    robot = replace(task.robot, rigid_link=RigidLink([0.4, arm.d35], [0.4, arm.d45], 0.03))
+    robot = replace(
+        task.robot,
+        rigid_link=RigidLink([0.4, arm.d35], [0.4, arm.d45], 0.03),
+        joint_rates=JointRates([2.0, 1.1], 3.3),
+    )
     return solve(replace(task, robot=robot, current=arm.shape), alternatives=1)
 
 

@@ -111,6 +111,9 @@ def test_wrong_arguments_are_told_together(solution):
     with pytest.raises(InputError) as caught:
         trajectory(solution, speed=0.0, acceleration=-1.0, pause=-1.0, period=float("nan"))
     assert [mistake.key for mistake in caught.value.mistakes] == ["speed", "acceleration", "pause", "period"]
+    with pytest.raises(InputError) as caught:
+        trajectory(solution, speed=[1.0, -1.0], acceleration=[1.0])
+    assert [mistake.key for mistake in caught.value.mistakes] == ["speed[1]", "acceleration"]
 
 
 def test_csv_and_json_hold_all_of_it(solution, tmp_path):

@@ -98,7 +98,7 @@ def arcs_to_json(shape: LinkShape) -> list[object]:
 
 
 def _robot(robot: Robot) -> dict[str, object]:
-    link, limits = robot.link, robot.joint_limits
+    link, limits, rates = robot.link, robot.joint_limits, robot.joint_rates
     return {
         "name": robot.name,
         "d12": robot.d12,
@@ -118,6 +118,7 @@ def _robot(robot: Robot) -> dict[str, object]:
             "links": [_rigid_link(link) for link in robot.rigid_links.links],
         },
         "joint_limits": {"base": _interval(limits.base), "second": _interval(limits.second)},
+        "joint_rates": {"speeds": rates.speeds, "accelerations": rates.accelerations},
     }
 
 

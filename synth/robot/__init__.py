@@ -7,9 +7,12 @@ from synth.robot.body import ArmBody
 from synth.robot.clearance import MOST_CLEARANCE, clear_of_obstacles, clear_of_tube, tube_clear_of_itself
 from synth.robot.closest_joints import closest_joints
 from synth.robot.hardware import (
+    ACCELERATION,
     PRESETS,
+    SPEED,
     Interval,
     JointLimits,
+    JointRates,
     MalleableLink,
     RigidLink,
     RigidLinkChoices,
@@ -40,9 +43,11 @@ from synth.robot.validity import keeps_clear
 from synth.robot.workspace import Workspace
 
 __all__ = [
+    "ACCELERATION",
     "ANYWHERE",
     "MOST_CLEARANCE",
     "PRESETS",
+    "SPEED",
     "ArcChains",
     "Arm",
     "ArmBody",
@@ -53,6 +58,7 @@ __all__ = [
     "Interval",
     "JointBranches",
     "JointLimits",
+    "JointRates",
     "Kinematics",
     "LinkReach",
     "LinkShape",

@@ -17,6 +17,7 @@ from synth.robot import (
     BaseRange,
     Interval,
     JointLimits,
+    JointRates,
     LinkShape,
     MalleableLink,
     RigidLink,
@@ -183,7 +184,7 @@ def _approaches(read: Sequence[TargetPart]) -> FloatArray | None:
 
 
 def _robot(read: RobotPart) -> Robot:
-    link, several, limits = read.link, read.rigid_links, read.joint_limits
+    link, several, limits, rates = read.link, read.rigid_links, read.joint_limits, read.joint_rates
     most = math.inf if link.max_total_bend is None else link.max_total_bend
     return Robot(
         name=read.name,
@@ -196,6 +197,7 @@ def _robot(read: RobotPart) -> Robot:
         if several is None
         else RigidLinkChoices(several.names, [_rigid_link(link) for link in several.links]),
         joint_limits=JointLimits(Interval(*limits.base), Interval(*limits.second)),
+        joint_rates=JointRates() if rates is None else JointRates(rates.speeds, rates.accelerations),
     )
 
 

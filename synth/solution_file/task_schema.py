@@ -25,6 +25,7 @@ Length = Annotated[float, Field(ge=0.0, le=LARGEST)]
 Point = Annotated[list[Number], Field(min_length=3, max_length=3)]
 Joints = Annotated[list[Number], Field(min_length=2, max_length=2)]
 Range = Pair[Number]
+Rates = Annotated[list[Annotated[float, Field(gt=0.0, le=LARGEST)]], Field(min_length=2, max_length=2)]
 
 
 class Part(BaseModel):
@@ -64,6 +65,13 @@ class JointRanges(Part):
     second: Range = Field(description="range of joint 2, rad")
 
 
+class JointRatesPart(Part):
+    """How fast joints 1 and 2 may turn."""
+
+    speeds: Rates = Field(description="largest speeds of joints 1 and 2, rad/s")
+    accelerations: Rates = Field(description="largest accelerations of joints 1 and 2, rad/s^2")
+
+
 class RobotPart(Part):
     """The hardware."""
 
@@ -75,6 +83,9 @@ class RobotPart(Part):
     rigid_link: RigidLinkLimits = Field(description="the rigid link; of a catalogue the one chosen")
     rigid_links: RigidLinksPart | None = Field(default=None, description="the catalogue; null: there is none")
     joint_limits: JointRanges = Field(description="ranges of the joints")
+    joint_rates: JointRatesPart | None = Field(
+        default=None, description="how fast the joints may turn; null: as the published prototype"
+    )
 
 
 class BasePart(Part):

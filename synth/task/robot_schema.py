@@ -90,6 +90,24 @@ class JointLimitsEntry(Strict):
     second: AngleRange = Field(default_factory=absent, description="range of joint 2; a full turn if absent")
 
 
+class JointRateEntry(Strict):
+    """How fast a joint may turn."""
+
+    max_speed_deg_s: Positive = Field(
+        default_factory=absent, description="largest speed; 150, the prototype's 25 rpm, if absent"
+    )
+    max_acceleration_deg_s2: Positive = Field(
+        default_factory=absent, description="largest acceleration; 10 rad/s^2 if absent"
+    )
+
+
+class JointRatesEntry(Strict):
+    """How fast the joints may turn."""
+
+    base: JointRateEntry = Field(default_factory=JointRateEntry, description="of joint 1")
+    second: JointRateEntry = Field(default_factory=JointRateEntry, description="of joint 2")
+
+
 class RobotEntry(Strict):
     """A robot inside a task; its unit is that of the task unless it states its own."""
 
@@ -107,6 +125,9 @@ class RobotEntry(Strict):
     ] = Field(description="the distances d35 and d45 to the end effector, or a catalogue of them")
     joint_limits_deg: JointLimitsEntry = Field(
         default_factory=JointLimitsEntry, description="ranges of the joints, in degrees"
+    )
+    joint_rates: JointRatesEntry = Field(
+        default_factory=JointRatesEntry, description="how fast the joints may turn: for trajectories"
     )
 
     @field_validator("rigid_link")

@@ -5,13 +5,22 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from synth.robot import Interval, JointLimits, MalleableLink, RigidLink, Robot
+from synth.robot import (
+    ACCELERATION,
+    SPEED,
+    Interval,
+    JointLimits,
+    JointRates,
+    MalleableLink,
+    RigidLink,
+    Robot,
+)
 from synth.task.catalogue import to_rigid_links
 from synth.task.entry_types import ends
 from synth.task.robot_schema import CatalogueEntry, LengthsEntry
 
 if TYPE_CHECKING:
-    from synth.task.robot_schema import RobotEntry
+    from synth.task.robot_schema import JointRateEntry, RobotEntry
 
 
 def to_robot(entry: RobotEntry, per_metre: float, name: str) -> Robot:
@@ -50,6 +59,7 @@ def to_robot(entry: RobotEntry, per_metre: float, name: str) -> Robot:
             base=full.base if limits.base is None else _radians(limits.base),
             second=full.second if limits.second is None else _radians(limits.second),
         ),
+        joint_rates=_rates(entry.joint_rates.base, entry.joint_rates.second),
     )
 
 
@@ -57,6 +67,17 @@ def to_interval(value: float | list[float], per_metre: float) -> Interval:
     """Return a number or a pair of a file as an interval, in metres."""
     low, high = ends(value)
     return Interval(low / per_metre, high / per_metre)
+
+
+def _rates(*joints: JointRateEntry) -> JointRates:
+    return JointRates(
+        speeds=[_in_radians(each.max_speed_deg_s, SPEED) for each in joints],
+        accelerations=[_in_radians(each.max_acceleration_deg_s2, ACCELERATION) for each in joints],
+    )
+
+
+def _in_radians(degrees: float | None, default: float) -> float:
+    return default if degrees is None else math.radians(degrees)
 
 
 def _radians(limits: list[float]) -> Interval:

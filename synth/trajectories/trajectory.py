@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 JOINTS = ("joint1", "joint2")
-SPEED = 25.0 * 2.0 * math.pi / 60.0  # rad/s: the prototype's motors
-ACCELERATION = 10.0  # rad/s^2, nominal
 
 
 @frozen_value
@@ -95,8 +94,8 @@ class Trajectory:
 def trajectory(
     solution: Solution,
     *,
-    speed: float = SPEED,
-    acceleration: float = ACCELERATION,
+    speed: ArrayLike | None = None,
+    acceleration: ArrayLike | None = None,
     pause: float = 0.0,
     period: float = 0.01,
 ) -> Trajectory:
@@ -108,8 +107,8 @@ def trajectory(
 
     Args:
         solution: A solution whose best shape has all ways.
-        speed: Largest speed of each joint, rad/s.
-        acceleration: Largest acceleration of each joint, rad/s^2.
+        speed: Largest speed of both joints or of each, shape () or (2,), rad/s; the robot's by default.
+        acceleration: Largest acceleration, likewise, rad/s^2.
         pause: How long to rest at each target, s.
         period: Largest time between rows, s.
 
@@ -121,10 +120,10 @@ def trajectory(
         NotFoundError: There is no shape.
         SynthError: A way is missing, or there is more than one path: then no motion is known to be clear.
     """
-    _check(solution, speed=speed, acceleration=acceleration, pause=pause, period=period)
+    speeds, rates = _limits(solution, pause, period, speed, acceleration)
     design = solution.best
     if solution.task.paths:
-        return _along(solution, np.full(2, speed), np.full(2, acceleration), period)
+        return _along(solution, speeds, rates, period)
     ways = motions(solution.task, design)
     for way in ways:
         if not way.found:
@@ -135,7 +134,7 @@ def trajectory(
     stops, now = {names[0]: 0.0}, pause
     for way, name in zip(ways, names[1:], strict=True):
         for start, end in pairwise(way.joints):
-            profile = Profile.fastest(start, end, np.full(2, speed), np.full(2, acceleration))
+            profile = Profile.fastest(start, end, speeds, rates)
             tables.append(_sampled(profile, now, period))
             now += profile.duration
         stops[name] = now
@@ -173,15 +172,33 @@ def _along(solution: Solution, speeds: FloatArray, rates: FloatArray, period: fl
     return Trajectory(times, rows[:, :2], rows[:, 2:4], rows[:, 4:], stops)
 
 
-def _check(solution: Solution, **given: float) -> None:
+def _limits(
+    solution: Solution,
+    pause: float,
+    period: float,
+    speed: ArrayLike | None,
+    acceleration: ArrayLike | None,
+) -> tuple[FloatArray, FloatArray]:
+    """Check all arguments; return the largest speeds and accelerations of the joints, each of shape (2,)."""
     refuse_unless("solution", solution, Solution)
-    mistakes = []
-    for key, value in given.items():
-        bounds = {"least": 0.0} if key == "pause" else {"above": 0.0}
+    own, mistakes = solution.task.robot.joint_rates, []
+    try:
+        own = replace(
+            own,
+            speeds=own.speeds if speed is None else speed,
+            accelerations=own.accelerations if acceleration is None else acceleration,
+        )
+    except InputError as error:
+        names = {"speeds": "speed", "accelerations": "acceleration"}
+        for mistake in error.mistakes:
+            field, *index = mistake.key.partition("[")
+            mistakes.append(Mistake(mistake.message, key="".join([names[field], *index])))
+    for key, value, bounds in (("pause", pause, {"least": 0.0}), ("period", period, {"above": 0.0})):
         if wrong := wrong_number(value, **bounds):
             mistakes.append(Mistake(wrong, key=key))
     if mistakes:
         raise InputError(mistakes)
+    return own.speeds, own.accelerations
 
 
 def _rest(joints: FloatArray, since: float, pause: float) -> FloatArray:

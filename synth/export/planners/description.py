@@ -20,8 +20,7 @@ import numpy as np
 from synth.arrays import FloatArray, frozen_value
 from synth.export.planners.inertia import Inertia, inertia_of
 from synth.export.planners.pieces import Chain, column_pieces, rod_pieces, tube_pieces
-from synth.robot import ArmBody
-from synth.trajectories import SPEED
+from synth.robot import ACCELERATION, SPEED, ArmBody
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -82,9 +81,13 @@ class Description:
     @property
     def nominal(self) -> str:
         """What of it is nominal, not measured."""
+        rates = self.task.robot.joint_rates
+        is_assumed = (rates.accelerations == ACCELERATION).all()
+        more = f", acceleration {ACCELERATION:g} rad/s^2" if is_assumed else ""
+        prototype = f"; speed {SPEED:.4g} rad/s is the prototype's 25 rpm"
         return (
-            f"nominal, not measured: density {DENSITY:g} kg/m^3, effort {EFFORT:g} N m; "
-            f"speed {SPEED:.4g} rad/s is the prototype's 25 rpm"
+            f"nominal, not measured: density {DENSITY:g} kg/m^3, effort {EFFORT:g} N m, jerk {JERK:g} rad/s^3"
+            f"{more}{prototype if (rates.speeds == SPEED).all() else ''}"
         )
 
     @cached_property

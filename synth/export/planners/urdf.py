@@ -16,7 +16,6 @@ import numpy as np
 from synth.export.planners.description import EFFORT, numbers
 from synth.export.planners.rotations import along
 from synth.geometry import roll_pitch_yaw
-from synth.trajectories import SPEED
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.export.planners.description import Body, Description
     from synth.export.planners.pieces import Chain
+    from synth.robot import Interval
 
 TUBE = "malleable_link.obj"
 _STRAIGHT = np.eye(3)
@@ -40,12 +40,13 @@ def urdf_bytes(description: Description) -> bytes:
     for body in description.bodies:
         _add_link(robot, body)
     base, limits = description.solution.robot.base, description.task.robot.joint_limits
+    rates = description.task.robot.joint_rates
     rotation, end = description.link_end
     _add_joint(robot, "base", "world", "base_link", base.position, base.rotation)
     joint = _add_joint(robot, "joint1", "base_link", "malleable_link", np.zeros(3), _STRAIGHT)
-    _turns(joint, (0.0, 0.0, 1.0), limits.base.lower, limits.base.upper)
+    _turns(joint, (0.0, 0.0, 1.0), limits.base, rates.speeds[0])
     joint = _add_joint(robot, "joint2", "malleable_link", "rigid_link", end, rotation)
-    _turns(joint, (1.0, 0.0, 0.0), limits.second.lower, limits.second.upper)
+    _turns(joint, (1.0, 0.0, 0.0), limits.second, rates.speeds[1])
     _add_joint(robot, "tool", "rigid_link", "tool0", description.tool, description.tool_rotation)
     return xml_bytes(robot)
 
@@ -125,15 +126,15 @@ def _add_joint(
     return joint
 
 
-def _turns(joint: Element, axis: Sequence[float], lower: float, upper: float) -> None:
-    """Let a joint turn about an axis of its own frame within limits, rad."""
+def _turns(joint: Element, axis: Sequence[float], limits: Interval, speed: float) -> None:
+    """Let a joint turn about an axis of its own frame within limits, rad, at most at a speed, rad/s."""
     joint.set("type", "revolute")
     SubElement(joint, "axis", xyz=numbers(axis))
     SubElement(
         joint,
         "limit",
-        lower=numbers(lower),
-        upper=numbers(upper),
+        lower=numbers(limits.lower),
+        upper=numbers(limits.upper),
         effort=numbers(EFFORT),
-        velocity=numbers(SPEED),
+        velocity=numbers(speed),
     )

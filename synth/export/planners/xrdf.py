@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from synth.export.planners.description import JERK
 from synth.export.planners.pieces import rod_spheres, tube_spheres
-from synth.trajectories import ACCELERATION
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,12 +23,10 @@ def xrdf_bytes(description: Description) -> bytes:
 
 
 def _lines(description: Description) -> Iterator[str]:
-    for line in (
-        *description.origin,
-        f"nominal: acceleration {ACCELERATION:g} rad/s^2, jerk {JERK:g} rad/s^3",
-    ):
+    for line in (*description.origin, description.nominal):
         yield f"# {line}"
     middle = description.solution.robot.joint_bounds.mean(axis=0).tolist()
+    accelerations = description.task.robot.joint_rates.accelerations.tolist()
     names = [body.name for body in description.bodies]
     yield from (
         "format: xrdf",
@@ -37,7 +34,7 @@ def _lines(description: Description) -> Iterator[str]:
         f"default_joint_positions: {{joint1: {middle[0]!r}, joint2: {middle[1]!r}}}",
         "cspace:",
         '  joint_names: ["joint1", "joint2"]',
-        f"  acceleration_limits: [{ACCELERATION!r}, {ACCELERATION!r}]",
+        f"  acceleration_limits: {accelerations!r}",
         f"  jerk_limits: [{JERK!r}, {JERK!r}]",
         'tool_frames: ["tool0"]',
         "collision:",

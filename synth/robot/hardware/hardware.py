@@ -10,6 +10,7 @@ import numpy as np
 from synth.arrays import frozen_value, given
 from synth.checks import Checks
 from synth.robot.hardware.interval import GivenInterval, Interval, check_interval, check_lengths
+from synth.robot.hardware.joint_rates import JointRates
 from synth.robot.hardware.rigid_links import RigidLink, RigidLinkChoices, no_triangle
 
 if TYPE_CHECKING:
@@ -92,6 +93,7 @@ class Robot:
             catalogue, the one chosen, and the first before that.
         joint_limits: Ranges of both joints.
         rigid_links: The catalogue from which the rigid link is chosen; None where `rigid_link` says it.
+        joint_rates: How fast the joints may turn and speed up: the limits of trajectories.
     """
 
     name: str
@@ -102,6 +104,7 @@ class Robot:
     rigid_link: RigidLink
     joint_limits: JointLimits = JointLimits()
     rigid_links: RigidLinkChoices | None = None
+    joint_rates: JointRates = JointRates()
 
     def __post_init__(self) -> None:
         checks = Checks(self)
@@ -110,6 +113,7 @@ class Robot:
         checks.is_a("link", MalleableLink)
         checks.number("d34", above=0.0)
         checks.number("tip_offset")
+        checks.is_a("joint_rates", JointRates)
         self._check_rigid_links(checks)
         if checks.is_a("joint_limits", JointLimits):
             for key, limits in (("base", self.joint_limits.base), ("second", self.joint_limits.second)):

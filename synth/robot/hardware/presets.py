@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from synth.robot.hardware.hardware import JointLimits, MalleableLink, Robot
 from synth.robot.hardware.interval import Interval
+from synth.robot.hardware.joint_rates import SPEED, JointRates
 from synth.robot.hardware.rigid_links import RigidLink
 
 if TYPE_CHECKING:
@@ -31,6 +32,7 @@ PRESETS: Mapping[str, Robot] = MappingProxyType(
                 base=Interval(math.radians(10.0), math.radians(350.0)),
                 second=Interval(math.radians(53.0), math.radians(307.0)),
             ),
+            joint_rates=JointRates(speeds=(SPEED, SPEED)),
         ),
     }
 )
