@@ -1,4 +1,4 @@
-"""Trajectories through the targets: on the ways, within limits; and driven in a simulator."""
+"""Trajectories through the targets: on the ways, within limits."""
 
 import csv
 import io
@@ -136,27 +136,6 @@ def test_csv_and_json_hold_all_of_it(solution, tmp_path):
     exported = json.loads((tmp_path / "trajectory.json").read_text())
     assert len(exported["points"]) == len((tmp_path / "trajectory.csv").read_text().splitlines()) - 1
     assert "metres, radians" in " ".join(exported["source"])
-
-
-@pytest.mark.filterwarnings("ignore")
-def test_pick_and_place_in_mujoco(tmp_path):
-    """Worked example: the exported model, its motors led along the trajectory, stops where it says."""
-    mujoco = pytest.importorskip("mujoco")
-    solution = synth.solve("problems/two-crates/task.yaml")
-    solution.export(tmp_path, "mjcf")
-    model = mujoco.MjModel.from_xml_path(str(tmp_path / "robot.xml"))
-    data = mujoco.MjData(model)
-    path = trajectory(solution, pause=1.5)
-    mujoco.mj_resetDataKeyframe(model, data, 0)
-    stops = {name: time + 1.4 for name, time in path.stops.items()}
-    for target in solution.targets:
-        while data.time < stops[target.name]:
-            data.ctrl[:] = path.at(data.time)
-            mujoco.mj_step(model, data)
-            assert data.ncon == 0  # clear of the floor and of itself
-        off = np.linalg.norm(data.site("P5").xpos - target.position)
-        assert off <= target.miss + 1e-5
-        assert off <= target.tolerance
 
 
 CORNER = {
