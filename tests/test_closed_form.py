@@ -134,6 +134,28 @@ def test_shapes_of_points_are_kept(arm):
     assert one.joints.shape == (2, 2)
     many = arm.inverse_kinematics(points.reshape(3, 4, 3), within=WITHIN)
     assert many.joints.shape == (3, 4, 2, 2)
-    np.testing.assert_array_equal(many.joints[0, 0], one.joints)
+    np.testing.assert_allclose(many.joints[0, 0], one.joints, rtol=1e-15)  # math and numpy round on their own
     assert arm.inverse_kinematics(np.empty((0, 3)), within=WITHIN).miss.shape == (0, 2)
     assert arm_of(arm.shape).inverse_kinematics(points[0], within=1.0).reaching(1.0).ndim == 2
+
+
+def test_one_point_and_one_posture_are_answered_as_many_are(arm):
+    joints = points_of(arm)
+    points = arm.forward_kinematics(*joints.T)
+    many = arm.inverse_kinematics(points, within=WITHIN)
+    for index, point in enumerate(points):
+        one = arm.inverse_kinematics(point, within=WITHIN)
+        reached = np.isfinite(many.miss[index])
+        np.testing.assert_array_equal(np.isfinite(one.miss), reached)
+        np.testing.assert_allclose(one.joints[reached], many.joints[index][reached], atol=1e-6)
+        np.testing.assert_allclose(one.miss[reached], many.miss[index][reached], atol=1e-12)
+    for (theta1, theta2), point in zip(joints, arm.forward_kinematics(*joints.T), strict=True):
+        np.testing.assert_allclose(arm.forward_kinematics(theta1, theta2), point, atol=1e-15)
+        np.testing.assert_allclose(arm.forward_kinematics([theta1], theta2), [point], atol=1e-15)
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, 1e200])
+@pytest.mark.filterwarnings("ignore:invalid value:RuntimeWarning", "ignore:overflow:RuntimeWarning")
+def test_what_is_no_point_has_no_branch_and_is_no_exception(arm, bad):
+    assert not np.isfinite(arm.inverse_kinematics([0.5, bad, 0.1], within=WITHIN).miss).any()
+    assert np.isnan(arm.forward_kinematics(bad, 1.0)[0]) == (not np.isfinite(bad))

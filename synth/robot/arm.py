@@ -72,7 +72,7 @@ class Arm(ArmInShape):
         Returns:
             P5, shape (..., 3), m.
         """
-        return self.base.to_task(self.kinematics.forward(theta1, theta2))
+        return self.base.to_task(self._closed_form.forward(theta1, theta2))
 
     def jacobian(self, joints: ArrayLike) -> FloatArray:
         """Return the derivatives of P5 by the joint angles, in the task frame.

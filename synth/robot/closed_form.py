@@ -8,15 +8,18 @@ a point then costs four arctangents and some dozens of products.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from synth.arrays import FloatArray
     from synth.robot.hardware import JointLimits
     from synth.robot.kinematics import Kinematics
 
+_N = TypeVar("_N", bound=Any)  # a number, or an array of them
 _TURN = 2.0 * math.pi
 _EXACT = 1e-13  # of the reach: what rounding leaves of a miss
 _SAME = 1e-5  # rad; branches nearer than this are one, met twice
@@ -51,6 +54,25 @@ class ClosedForm:
         self._right, self._across, self._centre = right.tolist(), across.tolist(), centre.tolist()
         self._reach = math.sqrt(squared) + radius
 
+    def forward(self, theta1: Any, theta2: Any) -> FloatArray:
+        """Return P5 in the base frame for joint angles, shape (...), rad; of shape (..., 3), m."""
+        if isinstance(theta1, float) and isinstance(theta2, float) and math.isfinite(theta1 + theta2):
+            return np.array(self._turned(theta1, theta2, math))
+        x, y, z = self._turned(np.asarray(theta1, dtype=float), np.asarray(theta2, dtype=float), np)
+        return np.stack(np.broadcast_arrays(x, y, z), axis=-1)
+
+    def _turned(self, theta1: _N, theta2: _N, of: Any) -> tuple[_N, _N, _N]:
+        """Return x, y and z of P5, m, for numbers or arrays; `of` as in `_pairs`."""
+        x, y, z = self._unturned(of.cos(theta2), of.sin(theta2))
+        cos, sin = of.cos(theta1), of.sin(theta1)
+        return cos * x - sin * y, sin * x + cos * y, z
+
+    def _unturned(self, cos: _N, sin: _N) -> tuple[_N, _N, _N]:
+        """Return x, y and z of P5 at joint 1 = 0, m, for cosine and sine of joint 2."""
+        (xc, xs), (yc, ys), (zc, zs) = self._across
+        cx, cy, cz = self._centre
+        return cx + xc * cos + xs * sin, cy + yc * cos + ys * sin, cz + zc * cos + zs * sin
+
     def branches(
         self, points: FloatArray, within: float, *, within_limits: bool
     ) -> tuple[FloatArray, FloatArray]:
@@ -69,39 +91,54 @@ class ClosedForm:
             some = slice(start, start + _TOGETHER)
             self._fill(points[some], within, joints[some], misses[some])
         if within_limits:
-            misses[((joints < self._lower) | (joints > self._upper)).any(axis=-1)] = math.inf
+            beyond = (joints < self._lower) | (joints > self._upper)
+            misses[beyond[..., 0] | beyond[..., 1]] = math.inf
         other = misses[:, 1] < misses[:, 0]
         if other.any():
             joints[other], misses[other] = joints[other, ::-1], misses[other, ::-1]
-        same = np.abs(joints[:, 0] - joints[:, 1]).max(axis=-1) < _SAME
-        misses[same, 1] = math.inf
+        same = np.abs(joints[:, 0] - joints[:, 1]) < _SAME
+        misses[same[:, 0] & same[:, 1], 1] = math.inf
         return joints, misses
 
     def _fill(self, points: FloatArray, within: float, joints: FloatArray, misses: FloatArray) -> None:
         """Put the branches of some points into arrays."""
-        x, y, z = points.T
-        from_axis = x * x + y * y
-        along = self._by_height * z + self._by_squared * (from_axis + z * z) + self._constant
-        first = np.minimum(np.maximum(along, -1.0), 1.0)
-        second = np.sqrt((1.0 - first) * (1.0 + first))
-        rho = np.sqrt(from_axis)
-        (r00, r01), (r10, r11) = self._right
-        (xc, xs), (yc, ys), (zc, zs) = self._across
-        cx, cy, cz = self._centre
-        share = np.empty((2, len(points)))  # along the second singular vector, of either sign
-        share[0], share[1] = second, -second
-        cos, sin = r00 * first + r10 * share, r01 * first + r11 * share
-        there_x, there_y = cx + xc * cos + xs * sin, cy + yc * cos + ys * sin
-        out, up = np.sqrt(there_x * there_x + there_y * there_y) - rho, cz + zc * cos + zs * sin - z
-        misses[:] = np.sqrt(out * out + up * up).T
-        theta1 = np.arctan2(there_x * y - there_y * x, there_x * x + there_y * y)
-        joints[..., 0] = _into_turn(theta1, self._middles[0]).T
-        joints[..., 1] = _into_turn(np.arctan2(sin, cos), self._middles[1]).T
-        on_axis = rho <= _EXACT * self._reach
-        if on_axis.any():  # where any theta1 does
-            joints[on_axis, :, 0] = self._middles[0]
+        # One point is worked out in plain numbers: arrays of one entry cost ten times as much.
+        alone = len(points) == 1 and math.isfinite(points.sum())
+        x, y, z = points[0].tolist() if alone else points.T
+        rho2 = x * x + y * y
+        along = self._by_height * z + self._by_squared * (rho2 + z * z) + self._constant
+        first = min(max(along, -1.0), 1.0) if alone else np.minimum(np.maximum(along, -1.0), 1.0)
+        pairs = self._pairs(x, y, z, first, math if alone else np)
+        for branch, (theta1, theta2, miss) in enumerate(pairs):
+            joints[:, branch, 0], joints[:, branch, 1], misses[:, branch] = theta1, theta2, miss
+        on_axis = rho2 <= (_EXACT * self._reach) ** 2
+        if on_axis if alone else on_axis.any():  # where any theta1 does
+            joints[np.atleast_1d(on_axis), :, 0] = self._middles[0]
         self._polish(points, within, joints, misses)
         misses[misses > within] = math.inf
+
+    def _pairs(self, x: _N, y: _N, z: _N, first: _N, of: Any) -> Iterator[tuple[_N, _N, _N]]:
+        """Yield both branches, theta1, theta2 and the miss of each, of points in numbers or in arrays.
+
+        Args:
+            x: Of the points, m; likewise y and z.
+            y: See x.
+            z: See x.
+            first: Share of w along the first singular vector.
+            of: Where the functions of such numbers are: math or numpy.
+        """
+        (r00, r01), (r10, r11) = self._right
+        second, rho = of.sqrt((1.0 - first) * (1.0 + first)), of.sqrt(x * x + y * y)
+        for share in (second, -second):  # along the second singular vector, of either sign
+            cos, sin = r00 * first + r10 * share, r01 * first + r11 * share
+            there_x, there_y, there_z = self._unturned(cos, sin)
+            out, up = of.sqrt(there_x * there_x + there_y * there_y) - rho, there_z - z
+            theta1 = of.atan2(there_x * y - there_y * x, there_x * x + there_y * y)
+            yield (
+                _into_turn(theta1, self._middles[0], of),
+                _into_turn(of.atan2(sin, cos), self._middles[1], of),
+                of.sqrt(out * out + up * up),
+            )
 
     def _polish(self, points: FloatArray, within: float, joints: FloatArray, misses: FloatArray) -> None:
         """Bring back the digits that the square root loses near a rim, and those of points beside it."""
@@ -118,6 +155,6 @@ class ClosedForm:
         misses[which, branch] = np.linalg.norm(reached - points[which], axis=-1)
 
 
-def _into_turn(angle: FloatArray, middle: float) -> FloatArray:
+def _into_turn(angle: _N, middle: float, of: Any = np) -> Any:
     """Return angles moved by whole turns to within half a turn of `middle`, rad."""
-    return np.asarray(angle - _TURN * np.rint((angle - middle) * (1.0 / _TURN)))
+    return angle - _TURN * of.floor((angle - middle) * (1.0 / _TURN) + 0.5)

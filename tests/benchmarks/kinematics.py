@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
-def best_time(run: Callable[[], object], repeats: int = 5) -> float:
+def best_time(run: Callable[[], object], repeats: int = 20) -> float:
     """Return the least time of the processor that something takes, s."""
     times = []
     for _ in range(repeats):
@@ -53,6 +53,9 @@ def main() -> None:
     miss = arm.inverse_kinematics(points, within=1e-6).miss[:, 0].max()
     single = best_time(lambda: [arm.inverse_kinematics(point, within=1e-6) for point in points[:few]])
     rows.append(("synth, inverse, one point", single / few))
+    postures = joints[:few].tolist()
+    single = best_time(lambda: [arm.forward_kinematics(*posture) for posture in postures])
+    rows.append(("synth, forward, one posture", single / few))
     with tempfile.TemporaryDirectory() as folder:
         urdf = str(solution_with(arm).export(folder, "urdf")[0])
         rows += list(others(urdf, joints[:few]))
