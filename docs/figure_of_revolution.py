@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from colours import BLUE, INK, ORANGE, PALE
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -13,7 +14,6 @@ from synth import PRESETS, Arm, Interval, JointLimits, LinkShape, Robot
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-BLUE, ORANGE, GREY, INK, PALE = "#0072b2", "#d55e00", "#8c8c8c", "#222222", "#cfe3f1"
 AZIMUTH, ELEVATION = np.radians(25.0), np.radians(24.0)
 HEIGHT = 0.50  # m, of the slice in the right-hand drawings
 

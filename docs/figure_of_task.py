@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from colours import BLUE, GREY, ORANGE, RED, WALL
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
 
     from synth import Arm, Solution
 
-BLUE, ORANGE, GREY, RED, WALL = "#0072b2", "#d55e00", "#555555", "#b22222", "#7a6a3a"
 ELEVATION, TOWARDS = 22.0, -62.0  # of who looks, deg
 CUT = 105.0  # deg of the workspace that are left out, so that the arm inside can be seen
 MOST_NAMED = 6  # targets; of more only the numbers are written

@@ -1,10 +1,16 @@
 """Draws all pictures of README and docs: `python docs/figures.py`, from the project's root."""
 
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
+from colours import BLUE, GREEN, GREY, INK, ORANGE, PURPLE
+from figure_of_bound import bound_picture
 from figure_of_revolution import revolution_picture
+from figure_of_sweep import sweep_picture
 from figure_of_task import task_picture
+from figures_of_theory import categories_picture, cognates_picture, five_points_picture
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -18,12 +24,11 @@ from synth.robot import LinkReach
 ROOT = Path(__file__).parents[1]
 TASK = ROOT / "problems" / "four-targets" / "task.yaml"
 PUBLISHED = ROOT / "problems" / "clark2020.yaml"
-BLUE, ORANGE, GREY = "#0072b2", "#d55e00", "#555555"
 MARKERS = {
     "general": ("o", BLUE, "general"),
     "puma": ("s", ORANGE, "PUMA-like"),
-    "scara": ("^", "#009e73", "SCARA"),
-    "spherical": ("D", "#cc79a7", "spherical"),
+    "scara": ("^", GREEN, "SCARA"),
+    "spherical": ("D", PURPLE, "spherical"),
 }
 
 
@@ -84,7 +89,7 @@ def reconfiguration_picture() -> Figure:
     axes.text(690, 8, "floor", color=GREY, ha="right")
     axes.axvline(0.0, color=GREY, linewidth=0.8, linestyle="-.")
     axes.plot([0, 0], [0, 1e3 * robot.d12], color=ORANGE, linewidth=5, solid_capstyle="butt", zorder=4)
-    axes.text(8, 22, "P1P2", color=ORANGE)
+    axes.text(8, 22, "P1P2", color=INK)
     axes.set(
         xlim=(-90, 720), ylim=(-15, 790), xlabel="distance from axis 1, ρ, mm", ylabel="height over P1, z, mm"
     )
@@ -95,16 +100,29 @@ def reconfiguration_picture() -> Figure:
     return figure
 
 
+PICTURES = {  # but those of a task and of its sheet
+    "docs/pictures/robot.png": robot_picture,
+    "docs/pictures/revolution.png": revolution_picture,
+    "docs/reconfiguration.png": reconfiguration_picture,
+    "docs/pictures/five-points.png": five_points_picture,
+    "docs/pictures/categories.png": categories_picture,
+    "docs/pictures/cognates.png": cognates_picture,
+    "docs/pictures/bound.png": bound_picture,
+    "docs/pictures/sweep.png": sweep_picture,
+}
+
+
 def main() -> None:
-    """Draw the robot, why workspaces are round, a task and its sheet, and what the link can do."""
-    robot_picture().savefig(ROOT / "docs" / "pictures" / "robot.png", dpi=110)
-    revolution_picture().savefig(ROOT / "docs" / "pictures" / "revolution.png", dpi=110)
-    reconfiguration_picture().savefig(ROOT / "docs" / "reconfiguration.png", dpi=110)
+    """Draw all pictures; the one of a simulation where MuJoCo is installed."""
+    for path, picture in PICTURES.items():
+        picture().savefig(ROOT / path, dpi=110)
     solution = solve(load_task(TASK))
     task_picture(solution).savefig(ROOT / "docs" / "workspace.png", dpi=110)
     crates = solve(load_task(ROOT / "problems" / "two-crates" / "task.yaml"))
     sheet = draw_sheet(crates, make_guide(crates.task, crates.best), "png")
     (ROOT / "docs" / "guide.png").write_bytes(sheet)
+    if find_spec("mujoco"):
+        import_module("pick_and_place").main()
 
 
 if __name__ == "__main__":

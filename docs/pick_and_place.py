@@ -16,6 +16,7 @@ os.environ.setdefault("MUJOCO_GL", "egl")  # before MuJoCo is imported: drawn wi
 
 import mujoco
 import numpy as np
+from colours import BLUE, INK, ORANGE
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -166,13 +167,13 @@ def picture(solution: synth.Solution) -> Figure:
         axes.axis("off")
     table = np.array(film.joints)
     axes = figure.add_axes((0.08, 0.1, 0.9, 0.34))
-    for index, (style, colour) in enumerate((("-", "#0072b2"), ("--", "#d55e00"))):
+    for index, (style, colour) in enumerate((("-", BLUE), ("--", ORANGE))):
         joint = f"joint {index + 1}"
         axes.plot(
             table[:, 0], np.degrees(table[:, 3 + index]), style, color=colour, label=f"{joint}, simulated"
         )
-        axes.plot(table[:, 0], np.degrees(table[:, 1 + index]), ":", color="#222222", linewidth=1.0)
-    axes.plot([], [], ":", color="#222222", linewidth=1.0, label="trajectory")
+        axes.plot(table[:, 0], np.degrees(table[:, 1 + index]), ":", color=INK, linewidth=1.0)
+    axes.plot([], [], ":", color=INK, linewidth=1.0, label="trajectory")
     axes.set(xlabel="time, s", ylabel="joint angle, deg", xlim=(0.0, table[-1, 0]))
     axes.grid(color="#e8e8e8", linewidth=0.5)
     axes.legend(fontsize=9, loc="center left")

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 TABLE = Path(__file__).parent / "pictures" / "sweep.csv"
 Place = tuple[float, float]
-PLACES: list[Place] = [(0.2 * i, 0.2 * j) for i in range(-3, 5) for j in range(-3, 5)]  # x and y of P1, m
+PLACES: list[Place] = [(0.2 * i, 0.2 * j) for i in range(-2, 4) for j in range(-2, 4)]  # x and y of P1, m
 
 
 def jobs() -> list[synth.Task]:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 # Colours of Okabe and Ito, told apart with any colour vision; line styles tell them apart in grey.
 LINK = "#0072B2"
-AXIS = "#D55E00"
+AXIS = "#B85000"
 TARGET = "#000000"
 GHOST = "#8C8C8C"
 # Which coordinates a view shows to the right and upwards: a third-angle projection.
