@@ -1,5 +1,6 @@
 """`synth new`: a first task that solves as it is; the version; completion in a shell."""
 
+import json
 import os
 import re
 
@@ -37,6 +38,14 @@ def test_what_the_first_task_leaves_to_choose_can_be_taken_as_it_stands(tmp_path
 def test_every_key_of_a_task_but_the_rarest_is_in_the_first_one():
     keys = set(re.findall(r"^(?:# )?(\w+):", FIRST_TASK, flags=re.MULTILINE))
     assert keys == set(synth.task.task_schema()["properties"]) - {"surface", "path", "current"}
+
+
+def test_the_first_line_names_the_schema_that_the_second_one_says_how_to_make():
+    first, second = FIRST_TASK.splitlines()[:2]
+    file = re.fullmatch(r"# yaml-language-server: \$schema=(\S+)", first).group(1)
+    command = re.search(r"`synth (.+) > (\S+)`", second)
+    assert command.group(2) == file
+    assert json.loads(invoked(*command.group(1).split()).output) == synth.task.task_schema()
 
 
 def test_what_is_there_already_is_left_as_it_was(tmp_path):

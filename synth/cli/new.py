@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from synth.cli.session import Session
 
 FIRST_TASK = """\
+# yaml-language-server: $schema=task.schema.json
+# By the line above editors complete and check keys, once `synth schema task > task.schema.json` was run here.
+
 # A task for `synth solve`. It solves as it is; put your own targets in place of these.
 
 synth: 1                        # version of this format
