@@ -12,7 +12,6 @@ from synth.arrays import FloatArray, GivenArray, frozen, frozen_value
 from synth.robot.arm_in_shape import ArmInShape
 from synth.robot.closed_form import ClosedForm
 from synth.robot.closest_joints import closest_joints
-from synth.robot.hardware import into_turn
 
 _SAME_BRANCH = 1e-5  # rad; branches nearer than this are one, met twice
 
@@ -104,37 +103,23 @@ class Arm(ArmInShape):
     ) -> JointBranches:
         """Return all joint angles that bring the end effector to points of the workspace.
 
-        In closed form, then polished. Where axis 2 is skew to axis 1 a point of the workspace has one
-        branch, where they meet or are parallel two; on axis 1 any theta1 does, and one is given.
+        In closed form, polished where that is not exact. Where axis 2 is skew to axis 1 a point of the
+        workspace has one branch, where they meet or are parallel two; on axis 1 any theta1 does, and one is
+        given.
 
         Args:
             points: Points in the task frame, shape (..., 3), m.
             within_limits: Whether branches beyond the joint limits are dropped.
-            within: Largest miss of a branch, m; others are dropped. With a small one it is ten times as
-                fast: only what is near the workspace is polished.
+            within: Largest miss of a branch, m; others are dropped. With a small one it is faster: only
+                what is near the workspace is polished.
 
         Returns:
             The branches; a point off the workspace has none with a small miss.
         """
         point = self.base.to_base(points)
-        if within < math.inf:
-            flat, shape = point.reshape(-1, 3), point.shape[:-1]
-            joints, miss = self._closed_form.branches(flat, within, within_limits=within_limits)
-            return JointBranches(joints.reshape(*shape, 2, 2), miss.reshape(*shape, 2))
-        limits = self.robot.joint_limits
-        joints = self.kinematics.polished(self.kinematics.branches(point), point[..., None, :])
-        for joint, interval in enumerate((limits.base, limits.second)):
-            joints[..., joint] = into_turn(joints[..., joint], interval.middle)
-        reached = self.kinematics.forward(joints[..., 0], joints[..., 1])
-        miss = np.linalg.norm(reached - point[..., None, :], axis=-1)
-        if within_limits:
-            miss[~limits.contain(joints)] = np.inf
-        order = np.argsort(miss, axis=-1, stable=True)
-        joints = np.take_along_axis(joints, order[..., None], axis=-2)
-        miss = np.take_along_axis(miss, order, axis=-1)
-        same = np.abs(joints[..., 0, :] - joints[..., 1, :]).max(axis=-1) < _SAME_BRANCH
-        miss[..., 1] = np.where(same, np.inf, miss[..., 1])
-        return JointBranches(joints, miss)
+        flat, shape = point.reshape(-1, 3), point.shape[:-1]
+        joints, miss = self._closed_form.branches(flat, within, within_limits=within_limits)
+        return JointBranches(joints.reshape(*shape, 2, 2), miss.reshape(*shape, 2))
 
     def closest_joints(self, points: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Return the joint angles within the limits that come closest to points, and their misses.

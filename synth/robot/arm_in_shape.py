@@ -23,8 +23,6 @@ from synth.robot.hardware import Robot
 from synth.robot.kinematics import Kinematics
 from synth.robot.link import LinkShape
 
-_SAME_BRANCH = 1e-5  # rad; branches nearer than this are one, met twice
-
 
 @frozen_value
 class ArmInShape:

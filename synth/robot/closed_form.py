@@ -24,6 +24,7 @@ _TURN = 2.0 * math.pi
 _EXACT = 1e-13  # of the reach: what rounding leaves of a miss
 _SAME = 1e-5  # rad; branches nearer than this are one, met twice
 _LIMIT_SLACK = 1e-9  # rad
+_STEPS, _TINY = 6, 1e-18
 _TOGETHER = 4096  # points, so that their arrays stay in the cache
 
 
@@ -146,13 +147,42 @@ class ClosedForm:
         promising = within + 4.0 * math.sqrt(within * self._reach) + 1e-6 * self._reach
         rough = (misses > _EXACT * self._reach) & (misses <= promising)
         which, branch = np.nonzero(rough)
-        if not len(which):
-            return
-        better = self._kinematics.polished(joints[which, branch], points[which])
-        reached = self._kinematics.forward(better[:, 0], better[:, 1])
+        if len(points) == 1 and math.isfinite(points.sum()):
+            for one in branch.tolist():
+                theta1, theta2 = joints[0, one].tolist()
+                x, y, z = points[0].tolist()
+                misses[0, one], *joints[0, one] = min(self._steps(theta1, theta2, x, y, z, math))
+        elif len(which):
+            (theta1, theta2), (x, y, z) = joints[which, branch].T, points[which].T
+            tried = np.array(list(self._steps(theta1, theta2, x, y, z, np)))
+            best = tried[tried[:, 0].argmin(axis=0), :, np.arange(len(which))]
+            misses[which, branch], joints[which, branch] = best[:, 0], best[:, 1:]
         for joint, middle in enumerate(self._middles):
-            joints[which, branch, joint] = _into_turn(better[:, joint], middle)
-        misses[which, branch] = np.linalg.norm(reached - points[which], axis=-1)
+            joints[which, branch, joint] = _into_turn(joints[which, branch, joint], middle)
+
+    def _steps(self, theta1: _N, theta2: _N, x: _N, y: _N, z: _N, of: Any) -> Iterator[tuple[_N, _N, _N]]:
+        """Yield miss, theta1 and theta2 from one Gauss-Newton step to the next; arguments as in `_pairs`."""
+        (xc, xs), (yc, ys), (zc, zs) = self._across
+        for _ in range(_STEPS + 1):
+            px, py, pz = self._turned(theta1, theta2, of)
+            off_x, off_y, off_z = px - x, py - y, pz - z
+            yield of.sqrt(off_x * off_x + off_y * off_y + off_z * off_z), theta1, theta2
+            # By theta1 P5 moves along (-py, px, 0), by theta2 along the tangent of its circle.
+            cos, sin, cos1, sin1 = of.cos(theta2), of.sin(theta2), of.cos(theta1), of.sin(theta1)
+            flat_x, flat_y, tz = xs * cos - xc * sin, ys * cos - yc * sin, zs * cos - zc * sin
+            tx, ty = cos1 * flat_x - sin1 * flat_y, sin1 * flat_x + cos1 * flat_y
+            # The 2x2 normal equations; a tiny diagonal keeps singular postures finite.
+            a, b, c = px * px + py * py + _TINY, px * ty - py * tx, tx * tx + ty * ty + tz * tz + _TINY
+            f, g = px * off_y - py * off_x, tx * off_x + ty * off_y + tz * off_z
+            det = a * c - b * b
+            det = 0.5 * (det + abs(det)) + 1e-30
+            theta1 = theta1 - _at_most_half((c * f - b * g) / det)
+            theta2 = theta2 - _at_most_half((a * g - b * f) / det)
+
+
+def _at_most_half(step: _N) -> Any:
+    """Return steps cut to half a radian: of numbers or arrays, so by absolute values."""
+    return 0.5 * (abs(step + 0.5) - abs(step - 0.5))
 
 
 def _into_turn(angle: _N, middle: float, of: Any = np) -> Any:

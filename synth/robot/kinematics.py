@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.robot.hardware import Interval
 
-_NEWTON_STEPS = 6
-
 
 @frozen_value
 class Kinematics:
@@ -93,30 +91,6 @@ class Kinematics:
             start[..., 1], start[..., 0]
         )
         return np.stack([theta1, theta2], axis=-1)
-
-    def polished(self, joints: FloatArray, point: FloatArray) -> FloatArray:
-        """Return joint angles after a few Gauss-Newton steps on the miss; never worse ones.
-
-        They bring back the digits that the square root in `branches` loses near a rim.
-        """
-        best, best_miss = joints, np.full(joints.shape[:-1], np.inf)
-        for _ in range(_NEWTON_STEPS + 1):
-            reached = self.forward(joints[..., 0], joints[..., 1])
-            residual = reached - point
-            miss = np.linalg.norm(residual, axis=-1)
-            better = miss < best_miss
-            best = np.where(better[..., None], joints, best)
-            best_miss = np.where(better, miss, best_miss)
-            by_theta1, by_theta2 = self.velocities(joints, reached)
-            # The 2x2 normal equations; a tiny diagonal keeps singular postures finite.
-            a = np.einsum("...i,...i", by_theta1, by_theta1) + 1e-18
-            b = np.einsum("...i,...i", by_theta1, by_theta2)
-            c = np.einsum("...i,...i", by_theta2, by_theta2) + 1e-18
-            f = np.einsum("...i,...i", by_theta1, residual)
-            g = np.einsum("...i,...i", by_theta2, residual)
-            step = np.stack([c * f - b * g, a * g - b * f], axis=-1)
-            joints = joints - np.clip(step / np.maximum(a * c - b * b, 1e-30)[..., None], -0.5, 0.5)
-        return best
 
     def velocities(self, joints: FloatArray, reached: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the derivatives of P5 by theta1 and by theta2, shape (..., 3), m.

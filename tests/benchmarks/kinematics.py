@@ -53,6 +53,8 @@ def main() -> None:
     miss = arm.inverse_kinematics(points, within=1e-6).miss[:, 0].max()
     single = best_time(lambda: [arm.inverse_kinematics(point, within=1e-6) for point in points[:few]])
     rows.append(("synth, inverse, one point", single / few))
+    single = best_time(lambda: [arm.inverse_kinematics(point) for point in points[:few]])
+    rows.append(("synth, inverse, one, no bound", single / few))
     postures = joints[:few].tolist()
     single = best_time(lambda: [arm.forward_kinematics(*posture) for posture in postures])
     rows.append(("synth, forward, one posture", single / few))
