@@ -8,6 +8,7 @@ import math
 import pkgutil
 from contextlib import contextmanager
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 from capture_files import recorded, trc_text
@@ -19,7 +20,7 @@ from planted_obstacles import planted_with_obstacles
 from planted_paths import planted_path
 from planted_surfaces import as_mesh, as_points, as_torus
 from sampled_shapes import noisy_task
-from standing import BARS, HOLD, SIGMA, seen
+from standing import BARS, HOLD, SIGMA, seen, standing
 
 import synth
 from synth.errors import Mistake
@@ -30,11 +31,22 @@ from synth.guide import make_guide
 from synth.guide.loop.checking import check_arm
 from synth.guide.loop.settings import best_settings
 from synth.guide.loop.swept_targets import swept_targets
-from synth.measurement import StandingArm, examine, inspect
+from synth.live.checker import CheckSettings
+from synth.live.serving import Recording
+from synth.measurement import (
+    MARKER_ERROR,
+    Deed,
+    StandingArm,
+    calibrate,
+    examine,
+    hand_error,
+    inspect,
+    learned_hand,
+    matched,
+)
 from synth.measurement.captures.formats import capture_in
 from synth.measurement.distances.measured import Precision
 from synth.measurement.distances.reading import parse_measurements
-from synth.measurement.markers.calibration import calibrate
 from synth.robot import Arm, BaseChoices, LinkShape, Workspace, link_to_pose, why_no_link
 from synth.robot.arm_in_shape import ArmInShape
 from synth.surfaces import Rectangle
@@ -90,6 +102,7 @@ def recorded_values(folder):
         _solved(folder)
         _proven()
         _stood_somewhere_else()
+        _bent_by_a_hand()
         _measured()
         _exact()
         _small()
@@ -137,6 +150,16 @@ def _stood_somewhere_else():
     joints = np.random.default_rng(0).uniform([0.5, 1.5], [6.0, 5.0], (60, 2))
     swept_targets(calibrate(true.forward(joints), joints, wanted, SIGMA), task)
     verify(task, Arm(ROBOT, LinkShape([[0.0, 0.0]], [5.0]), arm.d35, arm.d45))
+
+
+def _bent_by_a_hand():
+    wanted, true = standing(0)
+    readings = seen(true, BARS)
+    matched(readings.positions, readings.markers, wanted, ROBOT.tip_offset, SIGMA, base_calibrated=True)
+    fit = examine(readings, wanted, ROBOT, SIGMA, base_calibrated=True).fit
+    learned_hand([hand_error(fit, Deed.PLACED, wanted.end, wanted.axis, np.zeros(6))])
+    CheckSettings(3, MARKER_ERROR, base_calibrated=True, confidence=0.95, stiff=False)
+    Recording(Path("take.csv"), 1.0)
 
 
 def _measured():

@@ -7,7 +7,7 @@ from standing import SIGMA, standing
 
 from synth.geometry import SweptCircle
 from synth.measurement import StandingArm
-from synth.measurement.markers.calibration import calibrate
+from synth.measurement.calibration import calibrate
 
 LIMITS = ROBOT.joint_limits
 

@@ -15,6 +15,7 @@ arm that stands there, with its covariance.
 Checks of what a hand bent tell how good it is: `learned_hand`.
 """
 
+from synth.measurement.calibration import Calibration, calibrate
 from synth.measurement.distances import (
     Fit,
     Inspection,
@@ -49,14 +50,12 @@ from synth.measurement.hand import (
 from synth.measurement.markers import (
     MARKER_ERROR,
     ArmFit,
-    Calibration,
     Examination,
     Marker,
     Place,
     Readings,
     StandingArm,
     at_rest,
-    calibrate,
     cross,
     examine,
     examine_file,

@@ -1,7 +1,6 @@
 """Measured markers: where an arm stands, what it is, and how well its errors are known."""
 
 from synth.measurement.markers.arm_fit import ArmFit, fit_arm, marker_positions
-from synth.measurement.markers.calibration import Calibration, calibrate
 from synth.measurement.markers.examination import Examination, examine
 from synth.measurement.markers.examined_file import examine_file
 from synth.measurement.markers.frame_by_frame import at_rest, readings_of_lines, recorded_frames
@@ -23,7 +22,6 @@ from synth.measurement.markers.standing_joints import joints_closest_to, joints_
 __all__ = [
     "MARKER_ERROR",
     "ArmFit",
-    "Calibration",
     "Examination",
     "Marker",
     "Matched",
@@ -31,7 +29,6 @@ __all__ = [
     "Readings",
     "StandingArm",
     "at_rest",
-    "calibrate",
     "cross",
     "examine",
     "examine_file",

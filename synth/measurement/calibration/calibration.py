@@ -15,14 +15,14 @@ import numpy as np
 
 from synth.arrays import FloatArray, frozen, frozen_value
 from synth.geometry import Invariants, SweptCircle
-from synth.measurement.markers.standing_joints import joints_closest_to
-from synth.measurement.markers.sweep_fit import SMALL, UNKNOWNS, changed, fit_sweep
+from synth.measurement.calibration.sweep_fit import SMALL, UNKNOWNS, changed, fit_sweep
+from synth.measurement.markers import joints_closest_to
 from synth.rounding import rounded_up, told_apart
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from synth.measurement.markers.standing_arm import StandingArm
+    from synth.measurement.markers import StandingArm
 
 SURFACE_RMS = 0.3e-3  # m; a calibration that promises no better than this is refused, unless told
 _STARTS = 4

@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.measurement.markers.standing_arm import rotation_matrix
-from synth.measurement.markers.standing_joints import joints_closest_to, joints_following
+from synth.measurement.markers import joints_closest_to, joints_following, rotation_matrix
 from synth.robot import Interval, JointLimits
 
 if TYPE_CHECKING:
     from synth.arrays import FloatArray
-    from synth.measurement.markers.standing_arm import StandingArm
+    from synth.measurement.markers import StandingArm
 
 UNKNOWNS = 7
 SMALL = 1e-6  # m and rad, of the differences
