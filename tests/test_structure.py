@@ -107,6 +107,7 @@ LIBRARIES = {
         "cli/terminal.py",
     },
     "rich": {"cli/session.py"},
+    "rosbags": {"measurement/captures/ros_bag.py"},
     "ruamel": {"files/yaml_text.py"},
     "sympy": {"geometry/derivation.py"},
     "trimesh": {"surfaces/mesh_file.py"},

@@ -90,7 +90,7 @@ def check(
     """Say what to do with the link as it stands: lock it, correct it, or leave it at that.
 
     MEASURED holds markers in the base frame, marker,x_mm,y_mm,z_mm, or is a recording of the arm at rest:
-    Motive CSV, TRC, QTM TSV or C3D. SOLUTION is the solution.json of the task.
+    Motive CSV, TRC, QTM TSV, C3D or a ROS 2 bag. SOLUTION is the solution.json of the task.
 
     \b
     Exit codes:

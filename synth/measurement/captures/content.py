@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from synth.errors import InputError, Mistake
 from synth.measurement.captures.c3d_file import begins_as_c3d, c3d_capture
 from synth.measurement.captures.formats import capture_in, is_capture
+from synth.measurement.captures.ros_bag import bag_capture, is_bag
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -31,6 +32,8 @@ def content_of(path: Path, file: str) -> Capture | str:
     Raises:
         InputError: It cannot be read, is no text, or a capture that cannot be read.
     """
+    if is_bag(path):
+        return bag_capture(path, file)
     content = _bytes_of(path, file)
     if begins_as_c3d(content):
         return c3d_capture(content, file)
