@@ -58,7 +58,7 @@ def test_two_hundred_points_give_the_surface_as_well_as_promised(known, most):
 
 
 def test_a_quarter_of_the_range_without_joint_angles_is_refused():
-    for seed in range(3):
+    for seed in range(2):
         found, _ = swept(seed, known=False, share=0.25)
         assert "does not determine the surface" in found.refusal
         assert "of its 254 deg" in found.refusal

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import sqlite3
+from contextlib import ExitStack, closing
 from typing import TYPE_CHECKING, Self
 
 from synth.errors import SynthError
@@ -56,9 +57,11 @@ class Store:
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self._path = path
         try:
-            self._connection = sqlite3.connect(path)
-            with self._connection:
-                self._connection.execute(_TABLE)
+            with ExitStack() as closed_if_it_fails:
+                self._connection = closed_if_it_fails.enter_context(closing(sqlite3.connect(path)))
+                with self._connection:
+                    self._connection.execute(_TABLE)
+                closed_if_it_fails.pop_all()
         except sqlite3.Error as error:
             raise self._cannot(error) from error
 

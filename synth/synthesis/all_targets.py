@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.robot import Interval, JointLimits
 from synth.synthesis.check import proven_between, verify_targets
 from synth.synthesis.many_targets import least_worst, ranked
 from synth.synthesis.search import led_to
@@ -16,6 +17,8 @@ from synth.task import Objective
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from numpy.typing import NDArray
 
     from synth.robot import Arm
     from synth.task import Task
@@ -27,6 +30,8 @@ _FIRST = 2_000  # of them are verified first, to see how long one takes
 _OF_TIME_LEFT = 0.8  # in which others are
 _LED_BETWEEN = 3  # times that shapes are led to what they miss, or where nothing is proven
 _A_FEW = 0.2  # share of the targets: of more a shape misses not only what is in a dead zone
+_ANY_TURN = Interval(0.0, 2.0 * np.pi)
+_MOST = 0.5  # share of what is missed
 _PROVEN_BETWEEN = 3  # shapes that are told where surfaces and paths are to be looked at between samples
 _COVERING = 3  # shapes that are looked at where a part of a surface may be left
 
@@ -106,7 +111,8 @@ def for_all_targets(task: Task, designs: Sequence[Design], seed: int, watch: Wat
 def led_to_missed(part: Task, whole: WholeTask, seed: int, watch: Watch) -> WholeTask:
     """Return designs that reach all targets, if where the best misses a few of them others do.
 
-    A part may say nothing of where joint 1 has its dead zone: what is missed there joins it.
+    A part may say nothing of where joint 1 has its dead zone: what is missed there joins it. What is missed
+    because the targets lie on no workspace would only draw the search aside.
 
     Args:
         part: The task of few targets that they were found for.
@@ -120,12 +126,19 @@ def led_to_missed(part: Task, whole: WholeTask, seed: int, watch: Watch) -> Whol
             break
         check = best.designs[0].verification
         missed = ~np.array(check.within_tolerance)
-        if check.found or np.mean(missed) > _A_FEW:
+        if check.found or np.mean(missed) > _A_FEW or not _limits_keep(best.designs[0].arm, task, missed):
             break
         with watch.on("solving"):
             part, beside = led_to(part, best.designs, task.table.positions[missed], seed + number, watch)
         best = for_all_targets(task, beside, seed, watch)
     return best if best.designs and best.designs[0].verification.found else whole
+
+
+def _limits_keep(arm: Arm, task: Task, missed: NDArray[np.bool_]) -> bool:
+    """Whether it is the joint limits that keep an arm from most of what it misses."""
+    unlimited = replace(arm, robot=replace(arm.robot, joint_limits=JointLimits(_ANY_TURN, _ANY_TURN)))
+    misses = unlimited.closest_joints(task.table.positions[missed])[1]
+    return bool(np.mean(misses <= task.tolerances[missed]) > _MOST)
 
 
 def proven_whole(part: Task, whole: WholeTask, seed: int, watch: Watch) -> WholeTask:
