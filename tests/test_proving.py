@@ -49,7 +49,7 @@ def missed():
 
 
 def test_the_worst_miss_is_made_less_and_bounded_whatever_the_task_counts(missed):
-    left, found = iter(range(1000)), Found(*missed)  # four times as many looks as it takes
+    left, found = iter(range(4000)), Found(*missed)  # four times as many looks as it takes
     bound = found.certificate(Watch(stop=lambda: next(left, None) is None))
     given, polished = found.worst(found.designs[:1]), found.worst(found.designs)
     assert polished < given - 1e-5

@@ -33,6 +33,7 @@ _MOST_OUTLIERS = 0.1  # of the points
 _IMPLAUSIBLE = 1e-4
 _SECONDS = 181  # angles of joint 2 at which the surface is looked at
 _FEWEST = 8
+_HALVES_AGREE = 4.0  # times what half of the points leave open
 
 
 @frozen_value
@@ -44,7 +45,7 @@ class Calibration:
         covariance: Of the circle's centre (3, m), rotation vector about it (3, rad) and radius (m), (7, 7).
         invariants_covariance: Of (a, alpha, z0, h, R), shape (5, 5), m and rad.
         surface_rms: Expected distance of the fitted surface from the true one, root mean square over all that
-            joint 2 can reach, m.
+            joint 2 can reach, m; more where halves of the points contradict each other.
         plausibility: Chance that points with errors as supposed fit no better.
         used: Which points were used, shape (n,).
         joints_known: Whether the joint angles were given.
@@ -122,13 +123,15 @@ def calibrate(
             break
         used[np.flatnonzero(used)[worst]] = False
         starts = [arm, wanted]
-    covariance = np.asarray(np.linalg.inv(information + np.eye(UNKNOWNS) / _OPEN**2), dtype=np.float64)
+    covariance = _covariance(information)
     rms = _surface_rms(arm, covariance)
+    if joints is None and len(points) >= 2 * _FEWEST:
+        rms = max(rms, _told_by_halves(points[used], arm, wanted, sigma))
     refusal = ""
     if len(points) < _FEWEST:
         refusal = f"{len(points)} points are too few: {_FEWEST} at least, over the whole range of joint 2"
     elif rms > most_rms:
-        refusal = _too_little_swept(points, joints, arm, rms, most_rms)
+        refusal = _too_little_swept(points, joints, wanted, rms, most_rms)
     elif plausibility < _IMPLAUSIBLE:
         off = float(np.sqrt(np.mean(misses**2)))
         refusal = (
@@ -138,6 +141,11 @@ def calibrate(
     return Calibration(
         arm, covariance, _of_invariants(arm, covariance), rms, plausibility, used, joints is not None, refusal
     )
+
+
+def _covariance(information: FloatArray) -> FloatArray:
+    """Return the covariance, shape (7, 7); what no point shows stays open."""
+    return np.asarray(np.linalg.inv(information + np.eye(UNKNOWNS) / _OPEN**2), dtype=np.float64)
 
 
 def _surface_rms(arm: StandingArm, covariance: FloatArray) -> float:
@@ -153,6 +161,30 @@ def _surface_rms(arm: StandingArm, covariance: FloatArray) -> float:
     by = np.einsum("knj,nj->kn", (moved[:UNKNOWNS] - moved[UNKNOWNS:]) / (2.0 * SMALL), normal)
     variances = np.einsum("kn,kl,ln->n", by, covariance, by)
     return float(np.sqrt(np.sum(area * variances) / np.sum(area)))
+
+
+def _told_by_halves(points: FloatArray, arm: StandingArm, wanted: StandingArm, sigma: float) -> float:
+    """Return how far from an arm's surface those are that half of the points give, m, the farther of two.
+
+    Where it is about as far as half as many points leave open, 0. The covariance tells of one valley. Where
+    axes nearly meet or are nearly parallel the workspace has two sheets near each other, each point takes the
+    nearer one, and a short sweep fits arms whose surfaces are far apart elsewhere.
+    """
+    apart, expected = [], []
+    for half in (points[::2], points[1::2]):
+        fits = (fit_sweep(half, None, start, sigma) for start in (arm, wanted))
+        found, information, *_ = min(fits, key=lambda fit: fit[2])
+        apart.append(_between(arm, found))
+        expected.append(_surface_rms(found, _covariance(information)))
+    return max(apart) if max(apart) > _HALVES_AGREE * max(expected) else 0.0
+
+
+def _between(arm: StandingArm, other: StandingArm) -> float:
+    """Return the distance of another arm's surface from an arm's, root mean square by area, nearly, m."""
+    second = np.linspace(arm.limits.second.lower, arm.limits.second.upper, _SECONDS)
+    points = other.forward(np.column_stack([np.full(_SECONDS, other.joint1), second]))
+    area = np.hypot(points[:, 0], points[:, 1])
+    return float(np.sqrt(np.sum(area * _circle(arm).distance(points) ** 2) / np.sum(area)))
 
 
 def _of_invariants(arm: StandingArm, covariance: FloatArray) -> FloatArray:
