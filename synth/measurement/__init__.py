@@ -71,6 +71,7 @@ from synth.measurement.markers import (
     onto_vertical,
     readings_of_lines,
     recorded_frames,
+    rotation_between,
     rotation_matrix,
     sigma_of,
 )
@@ -129,6 +130,7 @@ __all__ = [
     "random_errors",
     "readings_of_lines",
     "recorded_frames",
+    "rotation_between",
     "rotation_matrix",
     "sample_shapes",
     "sigma_of",

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.measurement import cross, joints_closest_to, joints_following, left_to_joints
+from synth.measurement import cross, joints_closest_to, joints_following, left_to_joints, rotation_between
 from synth.robot import turned
 
 if TYPE_CHECKING:
@@ -145,10 +145,7 @@ def towards(arm: StandingArm, design: Arm) -> FloatArray:
     cross = np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
     turn = float(np.arctan2(cross, np.sum(a[:, :2] * b[:, :2])))
     end, axis = turned(np.stack([end, frame[:, 0]]), turn)
-    across = np.cross(arm.axis, axis)
-    sine = float(np.linalg.norm(across))
-    angle = float(np.arctan2(sine, arm.axis @ axis))
-    return np.concatenate([end - arm.end, across * (angle / sine if sine > 1e-12 else 0.0)])
+    return np.concatenate([end - arm.end, rotation_between(arm.axis, axis)])
 
 
 def size(move: FloatArray) -> float:

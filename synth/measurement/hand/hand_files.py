@@ -17,9 +17,9 @@ from synth.task import as_path, validate
 if TYPE_CHECKING:
     import os
     from collections.abc import Iterable
-    from pathlib import Path
 
     from synth.arrays import FloatArray
+    from synth.files import Document
 
 HAND_SCHEMA = "synth.hand/1"
 CHECK_SCHEMA = "synth.check/1"
@@ -87,7 +87,7 @@ def load_hand(path: str | os.PathLike[str]) -> Hand:
     return Hand(placement, file.share, floor, drift)
 
 
-def aim_of_check(path: str | os.PathLike[str]) -> tuple[FloatArray, FloatArray, FloatArray] | None:
+def aim_of_check(path: str | os.PathLike[str]) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return where a check said that the link's end should go.
 
     Returns:
@@ -97,7 +97,7 @@ def aim_of_check(path: str | os.PathLike[str]) -> tuple[FloatArray, FloatArray, 
     Raises:
         InputError: The file cannot be read, or is no check of an arm that was seen.
     """
-    file = _read_check(as_path(path))
+    file = _check_in(read_file(as_path(path)))
     if file.measured.axis2 is None:
         raise InputError([Mistake("is a check whose measurement was not believed", str(path))])
     asked = file.correction
@@ -115,23 +115,24 @@ def errors_of_checks(paths: Iterable[str | os.PathLike[str]]) -> list[HandError]
     Raises:
         InputError: A file cannot be read, or a file named is no check.
     """
-    files = []
+    documents: list[Document] = []
     for path in map(as_path, paths):
-        files += sorted(filter(_is_check, path.rglob("*.json"))) if path.is_dir() else [path]
-    parts = [part for file in files if (part := _read_check(file).hand) is not None]
+        if path.is_dir():
+            documents += filter(_is_check, map(read_file, sorted(path.rglob("*.json"))))
+        else:
+            documents.append(read_file(path))
+    parts = [part for each in documents if (part := _check_in(each).hand) is not None]
     return [
         HandError(Deed(part.deed), np.array(part.asked), np.array(part.error), np.array(part.noise))
         for part in parts
     ]
 
 
-def _is_check(path: Path) -> bool:
-    document = read_file(path)
+def _is_check(document: Document) -> bool:
     return isinstance(document.value, dict) and document.value.get("schema") == CHECK_SCHEMA
 
 
-def _read_check(path: Path) -> _CheckFile:
-    document = read_file(path)
+def _check_in(document: Document) -> _CheckFile:
     file = validate(document, _CheckFile)
     if file is None:
         raise document.error()

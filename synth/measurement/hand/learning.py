@@ -15,6 +15,7 @@ import numpy as np
 
 from synth.arrays import FloatArray, frozen, frozen_value
 from synth.measurement.hand.hand import Hand
+from synth.measurement.markers import rotation_between
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -75,13 +76,10 @@ def hand_error(fit: ArmFit, deed: Deed, end: FloatArray, axis: FloatArray, asked
         axis: Where axis 2 should point, a unit vector, shape (3,).
         asked: The displacement asked for, shape (6,), m and rad.
     """
-    across = np.cross(axis, fit.arm.axis)
-    sine = float(np.linalg.norm(across))
-    angle = math.atan2(sine, float(axis @ fit.arm.axis))
-    tilt = across * (angle / sine) if sine > 0.0 else np.zeros(3)
+    off = np.concatenate([fit.arm.end - end, rotation_between(axis, fit.arm.axis)])
     measured = 1 if deed is Deed.PLACED else 2  # the aim itself was, too
     noise = measured * np.array([3.0 * fit.point_sigma**2, 2.0 * fit.direction_sigma**2])
-    return HandError(deed, asked, np.concatenate([fit.arm.end - end, tilt]), noise)
+    return HandError(deed, asked, off, noise)
 
 
 def learned_hand(errors: Sequence[HandError], supposed: Hand | None = None) -> Hand:

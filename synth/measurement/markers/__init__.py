@@ -16,7 +16,13 @@ from synth.measurement.markers.markers import (
     sigma_of,
 )
 from synth.measurement.markers.matching import Matched, matched
-from synth.measurement.markers.standing_arm import StandingArm, cross, onto_vertical, rotation_matrix
+from synth.measurement.markers.standing_arm import (
+    StandingArm,
+    cross,
+    onto_vertical,
+    rotation_between,
+    rotation_matrix,
+)
 from synth.measurement.markers.standing_joints import joints_closest_to, joints_following, left_to_joints
 
 __all__ = [
@@ -46,6 +52,7 @@ __all__ = [
     "onto_vertical",
     "readings_of_lines",
     "recorded_frames",
+    "rotation_between",
     "rotation_matrix",
     "row_schema",
     "sigma_of",

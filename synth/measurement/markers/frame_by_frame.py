@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,7 +12,7 @@ from synth.errors import InputError, Mistake
 from synth.measurement.captures import FARTHEST, Capture, content_of
 from synth.measurement.markers.capture_markers import arm_tracks
 from synth.measurement.markers.frames import turn_upright
-from synth.measurement.markers.marker_file import readings_of_rows
+from synth.measurement.markers.marker_file import STRAIGHT_ON, readings_of_rows
 from synth.measurement.markers.marker_rows import csv_rows, json_rows
 from synth.measurement.markers.markers import Marker, Readings
 from synth.measurement.markers.resting import RestingMarkers
@@ -23,8 +22,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from synth.robot import Robot
-
-_STRAIGHT = math.pi  # joint 2 where nothing is said of it
 
 
 def readings_of_lines(text: str, robot: Robot, joint1: float, source: str) -> Readings:
@@ -86,7 +83,7 @@ def _captured(capture: Capture, robot: Robot, joint1: float) -> Iterator[Reading
             if len(point) == 3 and all(abs(value) <= farthest for value in point) and not lost:
                 seen[marker] = point
         if seen:
-            joints = np.tile([joint1, _STRAIGHT], (len(seen), 1))
+            joints = np.tile([joint1, STRAIGHT_ON], (len(seen), 1))
             yield Readings(tuple(seen), np.array(list(seen.values())) / capture.metre, joints)
 
 

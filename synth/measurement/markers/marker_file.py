@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from synth.measurement.markers.markers import Readings
     from synth.robot import Robot
 
-_STRAIGHT = math.pi  # joint 2 where nothing is said of it
+STRAIGHT_ON = math.pi  # joint 2, where nothing is said of it
 _ONE_PLACE = 5e-3  # m; what is seen nearer than this to another is the same marker again
 _MOST_POINTS = 5_000  # of which places are made; of more, evenly along the list
 
@@ -51,7 +51,7 @@ def load_readings(path: str | os.PathLike[str], robot: Robot, joint1: float) -> 
     file = str(path)
     text = content_of(Path(path), file)
     if isinstance(text, Capture):
-        return capture_readings(text, robot, (joint1, _STRAIGHT), file)
+        return capture_readings(text, robot, (joint1, STRAIGHT_ON), file)
     is_json = text.lstrip()[:1] == "{"
     rows = json_rows(text, file) if is_json else csv_rows(text, file)
     return readings_of_rows(rows, robot, joint1, file)
@@ -142,7 +142,7 @@ def readings_of_rows(rows: list[Row], robot: Robot, joint1: float, file: str) ->
         if values[0] is None:  # a gap
             continue
         first = joint1 if values[3] is None else math.radians(values[3])
-        second = _STRAIGHT if values[4] is None else math.radians(values[4])
+        second = STRAIGHT_ON if values[4] is None else math.radians(values[4])
         resting.add(marker, [[float(v or 0.0) for v in values[:3]]], (first, second))
     if mistakes:
         more = [Mistake("has more such lines", file)] if len(mistakes) > MISTAKES_AT_MOST else []

@@ -8,15 +8,16 @@ effector, tell wrong names from right ones; where two ways of naming fit as well
 
 from __future__ import annotations
 
-import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from synth.arrays import frozen_value
-from synth.measurement.markers.arm_fit import ArmFit, fit_arm, marker_positions
+from synth.measurement.markers.arm_fit import fit_arm, marker_positions
 from synth.measurement.markers.examination import what_is_missing
 from synth.measurement.markers.frames import PLAUSIBLE, frames_with_z_up
+from synth.measurement.markers.marker_file import STRAIGHT_ON
 from synth.measurement.markers.markers import Place, Readings
 
 if TYPE_CHECKING:
@@ -67,9 +68,9 @@ def matched(
     """
     markers = tuple(marker for marker in markers if marker.place is not Place.LINK)
     template = Readings(
-        markers, np.zeros((len(markers), 3)), np.tile([wanted.joint1, math.pi], (len(markers), 1))
+        markers, np.zeros((len(markers), 3)), np.tile([wanted.joint1, STRAIGHT_ON], (len(markers), 1))
     )
-    named: dict[tuple[int, ...], tuple[float, Readings]] = {}
+    named: dict[tuple[int, ...], Readings] = {}
     rng = np.random.default_rng(0)
     displaced = _PLACED * rng.normal(size=(_STARTS, 6)) / np.sqrt(3.0)
     displaced[0] = 0.0
@@ -80,12 +81,8 @@ def matched(
                 turned, template, wanted.moved(start), tip_offset, sigma, calibrated=base_calibrated
             )
             if found is not None:
-                assigned, fit, readings = found
-                told = (said,) if said else ()
-                named[tuple(assigned)] = (
-                    fit.plausibility,
-                    Readings(readings.markers, readings.positions, readings.joints, told),
-                )
+                assigned, readings = found
+                named[assigned] = replace(readings, warnings=(said,) if said else ())
     return _chosen(named, len(points), [marker.name for marker in markers])
 
 
@@ -97,8 +94,8 @@ def _iterated(
     sigma: float,
     *,
     calibrated: bool,
-) -> tuple[list[int], ArmFit, Readings] | None:
-    """Return for each marker the number of its point, or -1, the arm and the readings; None if none fits."""
+) -> tuple[tuple[int, ...], Readings] | None:
+    """Return for each marker the number of its point, or -1, and the readings; None if no arm fits."""
     from scipy.optimize import linear_sum_assignment  # type: ignore[import-untyped]  # noqa: PLC0415
 
     far, before = _FAR, None
@@ -116,23 +113,22 @@ def _iterated(
             return None
         fit = fit_arm(readings, arm, tip_offset, sigma, base_calibrated=calibrated)
         arm = fit.arm
-        if far == _NEAR and before == assigned.tolist():
-            return (assigned.tolist(), fit, readings) if fit.plausibility >= PLAUSIBLE else None
-        far, before = max(0.5 * far, _NEAR), assigned.tolist()
+        now = tuple(assigned.tolist())
+        if far == _NEAR and before == now:
+            return (now, readings) if fit.plausibility >= PLAUSIBLE else None
+        far, before = max(0.5 * far, _NEAR), now
     return None
 
 
-def _chosen(
-    named: dict[tuple[int, ...], tuple[float, Readings]], count: int, names: Sequence[str]
-) -> Matched:
+def _chosen(named: dict[tuple[int, ...], Readings], count: int, names: Sequence[str]) -> Matched:
     """Return the naming with the most markers, if it is the only one."""
     if not named:
         of = ", ".join(names)
         return Matched(
             _NONE, f"the {count} points fit no arm with the markers {of} near where it should stand"
         )
-    most = max(len(readings.markers) for _, readings in named.values())
-    best = [readings for _, readings in named.values() if len(readings.markers) == most]
+    most = max(len(readings.markers) for readings in named.values())
+    best = [readings for readings in named.values() if len(readings.markers) == most]
     if len(best) > 1:
         first, second = (
             {name: tuple(p) for name, p in zip(r.names, r.positions, strict=True)} for r in best[:2]
@@ -148,4 +144,4 @@ def _chosen(
     said += [f"{name} was not seen" for name in unseen]
     if count > most:
         said.append(f"passed over, being no markers of this arm: {count - most} points")
-    return Matched(Readings(readings.markers, readings.positions, readings.joints, tuple(said)))
+    return Matched(replace(readings, warnings=tuple(said)))

@@ -41,6 +41,14 @@ def rotation_matrix(vector: FloatArray) -> FloatArray:
     return np.asarray(np.eye(3) + sine[..., None, None] * cross + versine[..., None, None] * (cross @ cross))
 
 
+def rotation_between(one: FloatArray, other: FloatArray) -> FloatArray:
+    """Return the least rotation vector that turns a unit vector into another, shape (3,), rad."""
+    across = np.cross(one, other)
+    sine = float(np.linalg.norm(across))
+    angle = float(np.arctan2(sine, one @ other))
+    return np.asarray(across * (angle / sine if sine > 1e-12 else 0.0))
+
+
 @frozen_value
 class StandingArm:
     """Arms as they stand, in the frame of the measurement, m; leading axes "..." may be absent.
