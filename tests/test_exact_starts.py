@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 from planted import ROBOT, planted_task
 
+from synth.geometry import Invariants
 from synth.robot import Interval, RigidLink
 from synth.synthesis import Status, solve
 from synth.synthesis.shapes.shapes import Shapes
-from synth.synthesis.starts.exact_arms import exact_arms, nearest_to_exact_arms
+from synth.synthesis.starts.exact_arms import arms_near_all, arms_through_all, exact_arms
+from synth.synthesis.starts.random_shapes import RandomShapes
 from synth.task import PointTarget, Task, Topology
 
 
@@ -55,11 +57,32 @@ def test_targets_in_a_plane_or_on_a_sphere_have_no_finite_answer():
 def test_the_nearest_shapes_are_near_whichever_way_the_design_lies():
     task, arm = planted_task(5, 4)
     shapes = Shapes.sample(ROBOT, 20_000, np.random.default_rng(0))
-    chosen = nearest_to_exact_arms(shapes, [arm.invariants], 5)
+    chosen = RandomShapes(shapes).nearest_to_arms(np.array([astuple(arm.invariants)]), 5)
     assert 5 <= len(chosen) <= 20
     misses = [shapes.arm(int(i), task.base).closest_joints(task.positions_in_base)[1].max() for i in chosen]
     everyone = [shapes.arm(i, task.base).closest_joints(task.positions_in_base)[1].max() for i in range(100)]
     assert np.median(misses) < 0.5 * np.median(everyone)
+
+
+@pytest.mark.parametrize("count", [4, 5, 8, 40])
+def test_an_arm_through_all_of_many_targets_is_found_from_few_of_them(count):
+    task, arm = planted_task(7, count)
+    through = [Invariants(*row) for row in arms_through_all(task).tolist()]
+    assert is_design(arm.invariants, through)
+    assert len(through) <= 3
+
+
+def test_targets_off_a_surface_by_more_than_their_tolerance_have_no_arm_through_all():
+    task, arm = planted_task(7, 8)
+    off = np.random.default_rng(0).normal(scale=5e-3, size=(8, 3))
+    noisy = replace(task, targets=replace(task.table, positions=task.table.positions + off))
+    assert not len(arms_through_all(noisy))
+    near = arms_near_all(noisy)
+    assert is_design(arm.invariants, [Invariants(*row) for row in near.tolist()], tolerance=0.05)
+
+
+def test_too_few_targets_and_a_free_base_leave_algebra_without_an_answer():
+    assert arms_near_all(planted_task(1, 3)[0]).shape == (0, 5)
 
 
 def test_targets_without_a_real_design_are_reported_with_that_reason():

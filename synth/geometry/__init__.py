@@ -14,7 +14,8 @@ distances:
 
 The way back from targets is exact for few of them: five have at most two designs, four with a known R at
 most six (`arms_through_five`, `arms_through_four`), fewer have families (`sample_exact_arms`), and so
-have targets in a plane or on a sphere (`planes_through`, `spheres_through`, `circle_through`). Every arm
+have targets in a plane or on a sphere (`planes_through`, `spheres_through`, `circle_through`); of many,
+arms through a few are led near all (`arms_near`). Every arm
 has one `cognate`, another arm with the same surface.
 
 Beside the arm there are solids to keep clear of (`Sphere`, `Box`, `Capsule`), and least values that are
@@ -36,6 +37,7 @@ from synth.geometry.exact import (
     ExactArms,
     PlaneFamily,
     SphereFamily,
+    arms_near,
     arms_through_five,
     arms_through_four,
     circle_through,
@@ -60,12 +62,14 @@ __all__ = [
     "CategoryDistances",
     "ExactArms",
     "Invariants",
+    "NearArms",
     "PlaneFamily",
     "Solid",
     "Sphere",
     "SphereFamily",
     "SweptCircle",
     "WorkspaceSurface",
+    "arms_near",
     "arms_through_five",
     "arms_through_four",
     "cayley_menger",

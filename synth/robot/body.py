@@ -76,6 +76,20 @@ class ArmBody:
         share = along / self.rod_length if self.rod_length > 0.0 else np.zeros_like(along)
         return np.asarray(end + share[..., None] * (tip - end))  # a rod of no length is its own end
 
+    def from_rod(self, points: FloatArray, theta2: FloatArray, *, beyond: float) -> FloatArray:
+        """Return how far points are from the rod's centreline at joint 1 = 0, shape (n,), m.
+
+        Args:
+            points: The points, shape (n, 3), m.
+            theta2: Angles of joint 2, shape (n,), rad.
+            beyond: Where the part of the rod begins that counts, from the link's end, m.
+        """
+        end = self.arm.end_frame[1]
+        direction = (self.arm.kinematics.forward(0.0, theta2) - end) / self.rod_length
+        off = points - end
+        along = np.clip(np.einsum("ni,ni->n", off, direction), beyond, self.rod_length)
+        return np.asarray(np.linalg.norm(off - along[:, None] * direction, axis=1))
+
     def lowest(self) -> float:
         """Return the height of the lowest point of the tube beyond its mount, m; exact."""
         shape = self.arm.shape

@@ -116,12 +116,10 @@ def clear_of_tube(
     ways = _Ways(start[:, None], None if end is None else end[:, None])
 
     def distance(which: NDArray[np.intp], at: FloatArray) -> FloatArray:
-        rod = body.rod(at[:, 1], ways.joints(which, at[:, 2])[:, 0])
-        return np.asarray(np.linalg.norm(body.tube(at[:, 0]) - rod, axis=1))
+        return body.from_rod(body.tube(at[:, 0]), ways.joints(which, at[:, 1])[:, 0], beyond=joint)
 
     sides: list[_Side] = [
         (-body.arm.robot.d12, last, 1.0),
-        (joint, body.rod_length, 1.0),
         (0.0, ways.share, ways.travel[:, 0] * body.rod_length),
     ]
     return _least(body.tolerance, distance, sides, body.tube_radius + body.rod_radius, enough, ways.floor)

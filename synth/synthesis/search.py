@@ -104,8 +104,10 @@ class Search:
 
     def polish(self, start: Start) -> None:
         """Polish one start point; where that leads astray, again with shorter steps or by squares."""
-        if self._promises_all(start):
-            self.polishing.keep(start.arm, start.joints)
+        if self._promises_all(start) and self.polishing.keep(start.arm, start.joints).verification.found:
+            self.starts += 1
+            self._since_found += 1
+            return
         self.polishing.polish(start)
         if self._led_astray(start) and self.polishing.keep(start.arm, start.joints).verification.possible:
             self.polishing.polish(start, near=True)
@@ -137,8 +139,8 @@ class Search:
         return found > 0
 
     def _promises_all(self, start: Start) -> bool:
-        """Whether a start may reach every target as it is, and the program may lose it among obstacles."""
-        if not self._task.solids:
+        """Whether a start may reach every target as it is: then there is nothing for the program to do."""
+        if self.polishing.found:  # polished, others are gentler
             return False
         return start.cost <= float(self._task.tolerances.min()) ** 2
 

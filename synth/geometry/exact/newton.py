@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 _STEPS = 12
 # Two answers of one set closer than this, relative to their lengths, came from one double root.
 _SAME = 1e-7
+# Of least squares: the first damping; what is added to small scales, of the largest; a step, m or rad.
+_FIRST_DAMPING, _LEAST_SCALE, _FARTHEST = 1e-3, 1e-3, 0.2
 
 
 def polish(designs: FloatArray, rho: FloatArray, z: FloatArray, *, fixed_radius: bool) -> FloatArray:
@@ -54,6 +56,51 @@ def polish(designs: FloatArray, rho: FloatArray, z: FloatArray, *, fixed_radius:
         active, residual, jacobian = active[better], after[better], slopes[better]
         designs[active] = trial[better]
     return designs
+
+
+def least_squares(
+    designs: FloatArray,
+    rho: FloatArray,
+    z: FloatArray,
+    weights: FloatArray,
+    steps: int,
+    *,
+    fixed_radius: bool,
+) -> FloatArray:
+    """Return designs led towards the least weighted sum of squared distances, by damped Gauss-Newton steps.
+
+    Args:
+        designs: Starts, shape (C, 5).
+        rho: Distances of the n targets from axis 1, shape (n,), m.
+        z: Their heights, shape (n,), m.
+        weights: Of the squared distances, shape (n,).
+        steps: How many.
+        fixed_radius: As for `polish`.
+    """
+    unknowns = 4 if fixed_radius else 5
+    root, unit = np.sqrt(weights), np.eye(unknowns)
+    damping, designs = np.full(len(designs), _FIRST_DAMPING), designs.copy()
+    residual, jacobian = _residuals(designs, rho, z)
+    for _ in range(steps if len(designs) else 0):
+        weighted = jacobian[..., :unknowns] * root[:, None]
+        transposed = weighted.transpose(0, 2, 1)
+        curvature, slope = transposed @ weighted, (transposed @ (residual * root)[..., None])[..., 0]
+        scale = np.einsum("cii->ci", curvature)
+        scale = scale + _LEAST_SCALE * scale.max(axis=1, keepdims=True)
+        step = _solved(curvature + (damping[:, None] * scale)[:, :, None] * unit, slope)
+        trial = designs.copy()
+        trial[:, :unknowns] -= np.clip(step, -_FARTHEST, _FARTHEST)
+        after, slopes = _residuals(trial, rho, z)
+        better = np.sum(weights * after**2, axis=1) < np.sum(weights * residual**2, axis=1)
+        better &= np.isfinite(slopes).all(axis=(-1, -2))
+        designs[better], residual[better], jacobian[better] = trial[better], after[better], slopes[better]
+        damping = np.where(better, 0.2 * damping, 8.0 * damping)
+    return designs
+
+
+def squared_distances(designs: FloatArray, rho: FloatArray, z: FloatArray) -> FloatArray:
+    """Return squared distances of n targets from designs, shape (C, 5), to first order, shape (C, n), m^2."""
+    return np.asarray(_residuals(designs, rho, z)[0] ** 2)
 
 
 def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:

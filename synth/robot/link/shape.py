@@ -154,11 +154,14 @@ class LinkShape:
             and its last arc.
         """
         s = np.asarray(arc_length, dtype=np.float64)
-        starts = np.concatenate([[0.0], np.cumsum(self.lengths)[:-1]])
-        arc = np.clip(np.searchsorted(starts, s, side="right") - 1, 0, len(starts) - 1)
-        rotations, origins = self._arc_frames
-        _, within = arc_motion(self.curvatures[arc], s - starts[arc])
-        return np.asarray(origins[arc] + np.einsum("...ij,...j->...i", rotations[arc], within))
+        starts, bends, origins, tangents, normals = self._arcs_from_start
+        arc = np.maximum(np.searchsorted(starts, s, side="right") - 1, 0)
+        # As in `arc_motion`, with half the turn: the chord is 2 sin(k l / 2) / k long.
+        within = s - starts[arc]
+        half = 0.5 * bends[arc] * within
+        chord = within * np.sinc(half / np.pi)
+        along, aside = (chord * np.cos(half))[..., None], (0.5 * chord**2)[..., None]
+        return np.asarray(origins[arc] + along * tangents[arc] + aside * normals[arc])
 
     def centreline(self, spacing: float = 0.01) -> FloatArray:
         """Return points along the whole centreline, at most `spacing` m apart, ends included."""
@@ -201,6 +204,14 @@ class LinkShape:
             return f"{length}, as good as straight"
         radius, bend = rounded_down(self.min_bend_radius), math.degrees(self.total_bend)
         return f"{length}, smallest bend radius {radius} mm, {bend:.1f} deg of bend in all"
+
+    @cached_property
+    def _arcs_from_start(self) -> tuple[FloatArray, ...]:
+        """Return where arcs start, their bends, (m,), and there: origin, tangent and its slope, (m, 3)."""
+        rotations, origins = self._arc_frames
+        starts = np.concatenate([[0.0], np.cumsum(self.lengths)[:-1]])
+        normals = np.einsum("mij,mj->mi", rotations[..., :2], self.curvatures)
+        return starts, self.bends, origins, rotations[..., 2], normals
 
     @cached_property
     def _arc_frames(self) -> tuple[FloatArray, FloatArray]:

@@ -54,7 +54,8 @@ def chosen_joints(
     best, each = np.argmin(misses, axis=0), np.arange(len(targets))
     chosen, sunk = candidates[best, each], np.isinf(misses[best, each])
     # The nearest one mostly does; the branches of the inverse kinematics are looked at where it does not.
-    stuck = np.flatnonzero(sunk | ~clear_of_everything(task, arm, chosen) | elsewhere.all(axis=0))
+    room = Clearances.of(task, arm, chosen)
+    stuck = np.flatnonzero(sunk | ~room.clear | elsewhere.all(axis=0))
     if len(stuck):
         branches = arm.inverse_kinematics(targets[stuck])
         others = np.moveaxis(branches.joints, -2, 0)
@@ -67,7 +68,8 @@ def chosen_joints(
         clear = clear_of_everything(task, arm, candidates)
         best, each = np.argmin(np.where(clear, misses, np.inf), axis=0), np.arange(len(stuck))
         chosen[stuck], sunk[stuck] = candidates[best, each], np.isinf(misses[best, each])
-    return chosen, sunk, Clearances.of(task, arm, chosen)
+        room = Clearances.of(task, arm, chosen)
+    return chosen, sunk, room
 
 
 def _misses(task: Task, arm: Arm, candidates: FloatArray, targets: FloatArray) -> FloatArray:

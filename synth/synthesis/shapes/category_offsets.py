@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.shapes.shapes import ARM_LENGTH
+from synth.synthesis.shapes.circles import ARM_LENGTH
 from synth.task import Topology
 
 if TYPE_CHECKING:

@@ -20,6 +20,7 @@ from synth.robot import (
     random_curvatures,
 )
 from synth.synthesis.shapes.bases import Bases
+from synth.synthesis.shapes.circles import ARM_LENGTH
 from synth.synthesis.shapes.columns import ARCS, BASE, CURVATURES, D35, D45, LENGTH
 from synth.synthesis.shapes.limits import free_directions, free_lengths, into_limits
 from synth.synthesis.shapes.motion import motion_of_arm
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
     from synth.robot import BaseRange, Robot
 
 _EQUAL = 1e-12  # of the whole length: by so little arcs of one length may differ
-ARM_LENGTH = 0.5  # m; an axis 1 rad off puts P5 about this far off
 
 
 @frozen_value

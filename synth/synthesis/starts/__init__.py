@@ -1,7 +1,8 @@
 """Start points: shapes at random, led to the targets, the most promising first."""
 
 from synth.synthesis.starts.covering import best_covering
-from synth.synthesis.starts.exact_arms import exact_arms, nearest_to_exact_arms
+from synth.synthesis.starts.exact_arms import arms_through_all, exact_arms
+from synth.synthesis.starts.random_shapes import RandomShapes
 from synth.synthesis.starts.refined import Refined, relative_weights
 from synth.synthesis.starts.refinement import level, refine
 from synth.synthesis.starts.screening import estimated_misses
@@ -18,8 +19,10 @@ from synth.synthesis.starts.turned_arms import (
 
 __all__ = [
     "SAMPLE",
+    "RandomShapes",
     "Refined",
     "Start",
+    "arms_through_all",
     "as_it_is_and_turned",
     "best_covering",
     "covered_part",
@@ -27,7 +30,6 @@ __all__ = [
     "exact_arms",
     "level",
     "most_covered",
-    "nearest_to_exact_arms",
     "random_part",
     "refine",
     "refined_for_all",

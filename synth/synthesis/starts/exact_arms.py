@@ -1,24 +1,22 @@
-"""Start points from algebra: shapes near the exact designs, where the targets fix finitely many."""
+"""Arms from algebra: those through all targets, where these fix finitely many, and those near all of many."""
 
 from __future__ import annotations
 
-from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.geometry import arms_through_five, arms_through_four, is_generic
-from synth.synthesis.shapes import ARM_LENGTH
+from synth.geometry import arms_near, arms_through_five, arms_through_four, is_generic
+from synth.synthesis.starts.refined import relative_weights
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
     from synth.arrays import FloatArray
     from synth.geometry import Invariants
-    from synth.synthesis.shapes import Shapes
     from synth.task import Task
+
+_SETS = 10  # of as few targets as fix an arm, among whose arms is one through all targets, if there is one
+_THROUGH = 3  # of these arms, the nearest, that may be all
+_SETS_OF_MANY, _NEAR = 60, 40  # sets where no arm passes through all; arms near all that are looked at
 
 
 def exact_arms(task: Task) -> tuple[Invariants, ...] | None:
@@ -31,42 +29,41 @@ def exact_arms(task: Task) -> tuple[Invariants, ...] | None:
         The designs, none if there is no real one; None where the question has no finite answer: it takes
         four targets with the rigid link given, or five with a free one, in general position.
     """
-    positions, rigid = task.positions_in_base, task.robot.rigid_link
-    if len(positions) != (4 if rigid.is_fixed else 5) or not is_generic(positions):
+    positions, needed, radius = task.positions_in_base, *_minimal(task)
+    if len(positions) != needed or not is_generic(positions) or radius == 0.0:
         return None
-    if not rigid.is_fixed:
-        return arms_through_five(positions).of()
-    _, radius = task.robot.end_effector_circle(rigid.d35.lower, rigid.d45.lower)
-    return arms_through_four(positions, radius).of() if radius > 0.0 else None
+    return (arms_through_five(positions) if radius is None else arms_through_four(positions, radius)).of()
 
 
-def nearest_to_exact_arms(shapes: Shapes, designs: Sequence[Invariants], count: int) -> NDArray[np.intp]:
-    """Return which shapes are nearest to exact designs, `count` for each way in which a design may lie.
+def arms_through_all(task: Task) -> FloatArray:
+    """Return arms that pass through all targets within their tolerances, shape (k, 5), as `Invariants`.
 
-    A design leaves open how it is turned about axis 1, which of two mirror images it is, and which way
-    axis 2 points.
-
-    Args:
-        shapes: The shapes, of shape (N,).
-        designs: The designs.
-        count: How many shapes for each.
+    None where the targets are too few to fix finitely many, or the base is free.
     """
-    kinematics = shapes.kinematics
-    poses = _pose_about_axis_1(kinematics.centre, kinematics.frame[..., 0])
-    nearest = []
-    for design, sense in product(designs, (1.0, -1.0)):
-        for circle in (design.circle(1), design.circle(-1)):
-            pose = _pose_about_axis_1(circle.centre, sense * circle.axis)
-            off = np.linalg.norm(poses - pose, axis=-1) + np.abs(kinematics.radius - circle.radius)
-            nearest.append(np.argsort(off, kind="stable")[:count])
-    return np.unique(np.concatenate(nearest))
+    near = _arms_near(task, _SETS, 0)
+    if near is None:
+        return np.empty((0, 5))
+    values, costs = near
+    return values[:_THROUGH][costs[:_THROUGH] <= float(task.tolerances.min()) ** 2]
 
 
-def _pose_about_axis_1(centre: FloatArray, axis: FloatArray) -> FloatArray:
-    """Return centre and axis of circles, shape (..., 3), as rho, z and the axis seen from there, (..., 5)."""
-    rho = np.hypot(centre[..., 0], centre[..., 1])
-    outward = centre[..., :2] / np.maximum(rho, 1e-12)[..., None]
-    radial = np.einsum("...i,...i", axis[..., :2], outward)
-    tangential = outward[..., 0] * axis[..., 1] - outward[..., 1] * axis[..., 0]
-    direction = ARM_LENGTH * np.stack([radial, tangential, axis[..., 2]], axis=-1)
-    return np.concatenate([rho[..., None], centre[..., 2:], direction], axis=-1)
+def arms_near_all(task: Task) -> FloatArray:
+    """Return arms that pass near all targets, nearest first, shape (k, 5), as `Invariants`; none as above."""
+    near = _arms_near(task, _SETS_OF_MANY, 15)
+    return np.empty((0, 5)) if near is None else near[0][:_NEAR]
+
+
+def _minimal(task: Task) -> tuple[int, float | None]:
+    """Return how many targets fix an arm, and the radius of P5's circle if the rigid link is given, m."""
+    rigid = task.robot.rigid_link
+    if not rigid.is_fixed:
+        return 5, None
+    return 4, float(task.robot.end_effector_circle(rigid.d35.lower, rigid.d45.lower)[1])
+
+
+def _arms_near(task: Task, sets: int, steps: int) -> tuple[FloatArray, FloatArray] | None:
+    needed, radius = _minimal(task)
+    if task.places is not None or len(task.targets) < needed or radius == 0.0:
+        return None
+    weights = relative_weights(task)
+    return arms_near(task.positions_in_base, radius, weights=weights / weights.sum(), sets=sets, steps=steps)

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from synth.arrays import frozen_value
-from synth.synthesis.shapes import Shapes
+from synth.synthesis.shapes import Shapes, overlaps
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from synth.arrays import FloatArray
     from synth.task import Task
+    from synth.watch import Watch
+
+_EXACT = 2e-3  # of the tightest tolerance: a miss below meets a target
 
 
 @frozen_value
@@ -38,7 +42,7 @@ class Refined:
         cost = np.concatenate([part.cost for part in parts])
         return cls(Shapes.joined([part.shapes for part in parts]), joints, cost)
 
-    def take(self, chosen: NDArray[np.intp]) -> Refined:
+    def take(self, chosen: NDArray[np.intp] | NDArray[np.bool_]) -> Refined:
         """Return some of the shapes."""
         return Refined(self.shapes.take(chosen), self.joints[chosen], self.cost[chosen])
 
@@ -51,6 +55,17 @@ def relative_weights(task: Task) -> FloatArray:
     """Return each target's factor of its squared miss, shape (n,); the tightest has about 1 / n."""
     weights = task.weights * (task.tolerances.min() / task.tolerances) ** 2
     return np.asarray(weights / len(weights))
+
+
+def meets_all(task: Task, refined: Refined) -> NDArray[np.bool_]:
+    """Return which shapes meet all targets, as exactly as anybody asks for, shape (N,)."""
+    return refined.cost < (_EXACT * float(task.tolerances.min())) ** 2
+
+
+def weighed(task: Task, refined: Refined, watch: Watch) -> Refined:
+    """Return shapes whose costs say, too, how deep they are inside obstacles or themselves, m^2."""
+    depth = overlaps(task, refined.shapes, refined.joints, is_up=watch.is_up)
+    return replace(refined, cost=refined.cost + np.mean(depth**2, axis=-1))
 
 
 class Trimmed:

@@ -10,7 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from synth.synthesis.shapes import Postures, TargetsSeen
-from synth.synthesis.starts.descent import Descent
+from synth.synthesis.starts.descent import ENOUGH, Descent
 from synth.synthesis.starts.refined import Refined
 from synth.task import Objective
 from synth.watch import never
@@ -37,6 +37,7 @@ def refine(
     iterations: int | None = None,
     *,
     near: bool = False,
+    enough: int = ENOUGH,
     is_up: Callable[[], bool] = never,
 ) -> Refined:
     """Improve shapes by damped Gauss-Newton steps, their limits and those of the joints observed.
@@ -51,6 +52,7 @@ def refine(
             that branch; by default the nearest one, which is looked for again from time to time.
         iterations: Number of steps; by default enough to arrive, mostly.
         near: Whether the starts were refined before: the norm whose valleys are the widest is left out.
+        enough: With so many shapes that meet all targets, of those led together, no more steps are taken.
         is_up: Asked after each step whether to end with what there is.
 
     Returns:
@@ -61,7 +63,7 @@ def refine(
         task,
         shapes,
         theta2,
-        lambda descent: descent.after(iterations, keep_branches=theta2 is not None, near=near),
+        lambda descent: descent.after(iterations, keep_branches=theta2 is not None, near=near, enough=enough),
         is_up,
     )
 

@@ -12,9 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import frozen_value
-from synth.synthesis.starts.exact_arms import exact_arms, nearest_to_exact_arms
-from synth.synthesis.starts.refined import relative_weights
-from synth.synthesis.starts.screening import screened, shapes_for
+from synth.synthesis.starts.descent import ENOUGH
+from synth.synthesis.starts.exact_arms import arms_near_all, arms_through_all
+from synth.synthesis.starts.random_shapes import shapes_for
+from synth.synthesis.starts.refined import meets_all, relative_weights, weighed
+from synth.synthesis.starts.refinement import refine
+from synth.synthesis.starts.screening import screened
 from synth.synthesis.starts.thinning import thinned
 from synth.synthesis.starts.turned_arms import as_it_is_and_turned
 from synth.synthesis.starts.valleys import Valleys
@@ -33,12 +36,16 @@ if TYPE_CHECKING:
 
 
 _MOST = 40  # targets that are searched with
+# At first few shapes, the best, are led to the targets, until some meet all: mostly that is the answer.
+_LOOKED_AT, _LOOKS, _FEW = 40, 16, 3
+_MORE_LOOKS = 6  # steps, where none of them does
 _REFINED = 200  # shapes: half of them the best, half at random from the good ones
 _GOOD = 4_000  # the best of the screening, which knows nothing of the valleys
 _FRESH = 10_000  # the best, from which fresh ones are drawn
-_PER_DESIGN = 6  # shapes looked at near each exact design, where there are any
+_PER_ARM = 3  # shapes looked at near each form of an arm from algebra, where there are any
 # Misses below this, m, are as good as none for a start: the refinement sees to them.
 _NEAR = 3e-3
+_GENTLER = 1e-12  # m^2 for each 1/m of bending energy: no more than to tell equals apart
 # Starts whose link ends are nearer than this, m, count as one, an axis 1 rad apart for ARM_LENGTH.
 _DISTINCT = 0.03
 _BETTER = 0.01  # part by which the later of such must be better to count all the same
@@ -98,21 +105,37 @@ def start_points(
 
 def _starts(task: Task, seed: int, rng: np.random.Generator, watch: Watch, *, quick: bool) -> Iterator[Start]:
     """Yield start points for a task of few targets, each step with more effort than the one before."""
-    shapes = shapes_for(task, seed)
+    random = shapes_for(task, seed)
+    shapes = random.shapes
     if not len(shapes.length):
         return
-    cost = screened(task, shapes)
+    cost = screened(task, random)
     # Among near misses the gentle bends come first: the refinement sees to the rest.
-    order = np.lexsort([shapes.bending, np.maximum(cost, _NEAR**2)])
+    cost = np.maximum(cost, _NEAR**2) + _GENTLER * random.bending
+    order = np.argsort(cost, kind="stable")
 
     def drawn(count: int, most: int) -> NDArray[np.intp]:
         return rng.choice(order[:most], min(count, most, len(order)), replace=False)
 
-    first = np.union1d(order[: _REFINED // 2], drawn(_REFINED // 2, _GOOD))
-    if task.places is None and (designs := exact_arms(task)):
-        first = np.union1d(first, nearest_to_exact_arms(shapes, designs, _PER_DESIGN))
-    valleys, distinct = Valleys.of(task, shapes.take(first), watch), _Distinct(task)
-    if not (quick or valleys.agreed):
+    def led(chosen: NDArray[np.intp], iterations: int | None = None, enough: int = ENOUGH) -> Refined:
+        return refine(task, shapes.take(chosen), iterations=iterations, enough=enough, is_up=watch.is_up)
+
+    distinct, best = _Distinct(task), order[: _REFINED // 2]
+    if quick:
+        fresh = led(np.union1d(best, drawn(_REFINED // 2, _GOOD)))
+        yield from distinct.of(Valleys.of(task, fresh, None, watch).promising)
+        return
+    through_all = random.nearest_to_arms(arms_through_all(task), _PER_ARM)
+    looked_at = led(np.concatenate([order[:_LOOKED_AT], through_all]), iterations=_LOOKS, enough=_FEW)
+    exact = weighed(task, looked_at.take(meets_all(task, looked_at)), watch)
+    yield from distinct.of(exact.take(meets_all(task, exact)))
+    fresh = looked_at.take(np.arange(min(_LOOKED_AT, len(order))))
+    fresh = refine(task, fresh.shapes, iterations=_MORE_LOOKS, near=True, is_up=watch.is_up)
+    near = random.nearest_to_arms(arms_near_all(task), 1)
+    valleys = Valleys.of(task, fresh, led(near) if len(near) else None, watch)
+    if not valleys.agreed:
+        valleys = valleys.joined(led(np.union1d(best[_LOOKED_AT:], drawn(_REFINED // 2, _GOOD))))
+    if not valleys.agreed:
         yield from distinct.of(valleys.within_tolerance)
         valleys = valleys.explored(lambda: shapes.take(drawn(_REFINED, _FRESH)), rng)
     yield from distinct.of(valleys.promising)

@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.synthesis.check import counted, verify_targets
+from synth.synthesis.starts.random_shapes import shapes_for
 from synth.synthesis.starts.refined import Trimmed
 from synth.synthesis.starts.refinement import refine
-from synth.synthesis.starts.screening import estimated_misses, shapes_for
+from synth.synthesis.starts.screening import estimated_misses
 from synth.synthesis.starts.turned_arms import SAMPLE, as_it_is_and_turned, random_part
 from synth.task import Objective
 
@@ -84,11 +85,12 @@ def _above_floor(task: Task) -> Task:
 
 def _promising(task: Task, seed: int) -> Shapes:
     """Return random shapes that come near enough of the samples."""
-    shapes = shapes_for(task, seed)
+    random = shapes_for(task, seed)
+    shapes = random.shapes
     if not len(shapes.length):
         return shapes
     rng = np.random.default_rng([seed, 11])
-    squared = np.minimum(estimated_misses(task, shapes), _FAR).T ** 2
+    squared = np.minimum(estimated_misses(task, random), _FAR).T ** 2
     order = np.argsort(Trimmed(task).mean(squared), kind="stable")
     half = _LED // 2
     drawn = rng.choice(order[:_GOOD], min(half, len(order)), replace=False)

@@ -21,10 +21,9 @@ import numpy as np
 
 from synth.arrays import frozen_value
 from synth.synthesis.shapes import overlaps
-from synth.synthesis.starts.refined import Refined
+from synth.synthesis.starts.refined import Refined, meets_all, weighed
 from synth.synthesis.starts.refinement import cleared, level, refine
 from synth.task import Objective
-from synth.watch import Watch
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -34,6 +33,7 @@ if TYPE_CHECKING:
     from synth.arrays import FloatArray
     from synth.synthesis.shapes import Shapes
     from synth.task import Task
+    from synth.watch import Watch
 
 _ROUNDS = 10  # of the three steps
 _KEPT = 400  # shapes
@@ -50,8 +50,9 @@ _GO_ON = 4  # one in so many, the best
 _ALIKE = 0.01  # costs that differ by less than this part are those of one valley, bent in several ways
 # It is enough if so many shapes meet all targets, or if so many fresh ones, and such a share, end alike.
 _ENOUGH = 5
-_EXACT = 2e-3  # of the tightest tolerance: a miss below meets a target
-_AGREEING = 0.05
+_DRAWN, _AGREEING = 150, 0.05
+# Or, where so many shapes that algebra led ended alike, so many fresh ones, and such a share.
+_LED, _ENOUGH_TOGETHER, _AGREEING_TOGETHER = 2, 3, 0.025
 _SAME = 1e-3  # part of the least cost by which those differ at most
 # But with a cost below this, m^2, the workspace may have two sheets so close together that most shapes end
 # with some targets on the wrong one.
@@ -72,6 +73,7 @@ class Valleys:
         best: The best shapes.
         fresh: Where the best of the shapes ended that know nothing of each other: mean squared misses, m^2.
         drawn: How many of these there were.
+        led: Where shapes near arms from algebra ended: mean squared misses, m^2.
     """
 
     task: Task
@@ -79,13 +81,34 @@ class Valleys:
     best: Refined
     fresh: FloatArray
     drawn: int
+    led: FloatArray
 
     @classmethod
-    def of(cls, task: Task, fresh: Shapes, watch: Watch | None = None) -> Valleys:
-        """Return what fresh shapes tell; when the watch is up, as far as they are."""
-        watch = watch or Watch()
-        best = _weighed(task, refine(task, fresh, is_up=watch.is_up), watch)
-        return cls(task, watch, best, best.cost, len(best.cost))
+    def of(cls, task: Task, fresh: Refined, led: Refined | None, watch: Watch) -> Valleys:
+        """Return what refined shapes tell.
+
+        Args:
+            task: The task.
+            fresh: Shapes that know nothing of each other.
+            led: Shapes that began near arms from algebra, if there are any.
+            watch: When it is up every step ends with what there is.
+        """
+        fresh = weighed(task, fresh, watch)
+        if led is None:
+            return cls(task, watch, fresh, fresh.cost, len(fresh.cost), np.empty(0))
+        led = weighed(task, led, watch)
+        best = Refined.joined([fresh, led])
+        return cls(task, watch, best, fresh.cost, len(fresh.cost), led.cost)
+
+    def joined(self, fresh: Refined) -> Valleys:
+        """Return what is known with more fresh shapes, refined."""
+        fresh = weighed(self.task, fresh, self.watch)
+        return replace(
+            self,
+            best=Refined.joined([self.best, fresh]),
+            fresh=np.concatenate([self.fresh, fresh.cost]),
+            drawn=self.drawn + len(fresh.cost),
+        )
 
     @property
     def promising(self) -> Refined:
@@ -94,7 +117,7 @@ class Valleys:
         if self.task.objective is Objective.LEAST_SQUARES:
             return best
         some = best.take(_some_of_each_kind(best, 1)[:_LEVELLED])
-        return _weighed(self.task, level(self.task, some, self.watch.is_up), self.watch)
+        return weighed(self.task, level(self.task, some, self.watch.is_up), self.watch)
 
     @property
     def within_tolerance(self) -> Refined:
@@ -108,18 +131,29 @@ class Valleys:
         deep = np.flatnonzero(overlaps(self.task, best.shapes, best.joints, is_up=is_up).any(axis=1))
         if not len(deep) or is_up():
             return self.best
-        moved = _weighed(self.task, cleared(self.task, best.take(deep), is_up), self.watch)
+        moved = weighed(self.task, cleared(self.task, best.take(deep), is_up), self.watch)
         return self.best if is_up() else Refined.joined([self.best, moved])
 
     @property
     def agreed(self) -> bool:
-        """Whether enough shapes meet all targets, or enough fresh ones ended in the best valley."""
-        exact = (_EXACT * float(self.task.tolerances.min())) ** 2
-        if np.count_nonzero(self.best.cost < exact) >= _ENOUGH:
+        """Whether enough shapes meet all targets, or enough of them ended in the best valley.
+
+        Fewer fresh ones are enough where algebra leads there, too: it knows nothing of them.
+        """
+        if np.count_nonzero(meets_all(self.task, self.best)) >= _ENOUGH:
             return True
-        least = self.best.cost.min()
-        agreeing = np.count_nonzero(self.fresh <= (1.0 + _SAME) * least)
-        return bool(least > _SHEETS and agreeing >= max(_AGREEING * self.drawn, _ENOUGH))
+        by_fresh, by_algebra = self._in_the_best
+        alone = self.drawn >= _DRAWN and by_fresh >= max(_AGREEING * self.drawn, _ENOUGH)
+        together = by_algebra >= _LED and by_fresh >= max(_AGREEING_TOGETHER * self.drawn, _ENOUGH_TOGETHER)
+        squares = self.task.objective is Objective.LEAST_SQUARES
+        return float(self.best.cost.min()) > _SHEETS and (alone or (squares and together))
+
+    @property
+    def _in_the_best(self) -> tuple[int, int]:
+        """How many fresh shapes ended in the best valley, and how many of those that algebra led."""
+        same = (1.0 + _SAME) * self.best.cost.min()
+        by_fresh, by_algebra = (int(np.count_nonzero(ended <= same)) for ended in (self.fresh, self.led))
+        return by_fresh, by_algebra
 
     def explored(self, draw: Callable[[], Shapes], rng: np.random.Generator) -> Valleys:
         """Return what is known after a search for better valleys.
@@ -130,6 +164,7 @@ class Valleys:
         """
         now = replace(self, best=self.best.best(_KEPT))
         for _ in range(_ROUNDS):
+            before = float(now.best.cost.min())
             for step in (_bent, _swapped):
                 if now.agreed or self.watch.is_up():
                     return now
@@ -137,7 +172,16 @@ class Valleys:
                 children = step(self.task, now.best.take(_parents(now.best)), rng, self.watch)
                 now = now.with_better(children)
             now = now.with_fresh(draw())
+            if now.is_settled_since(before):
+                return now
         return now
+
+    def is_settled_since(self, before: float) -> bool:
+        """Whether a round gained nothing on a valley, of least cost `before`, that all ways had led to."""
+        by_fresh, by_algebra = self._in_the_best
+        least = float(self.best.cost.min())
+        gained = before > (1.0 + _SAME) * least
+        return least > _SHEETS and not gained and by_fresh >= _ENOUGH and by_algebra >= _LED
 
     def with_fresh(self, shapes: Shapes) -> Valleys:
         """Return what is known with some more fresh shapes, the worst of which are given up half-way."""
@@ -146,7 +190,7 @@ class Valleys:
         refined = refine(self.task, shapes, iterations=first, is_up=is_up)
         refined = refined.best(len(shapes.length) // _GO_ON)
         refined = refine(self.task, refined.shapes, iterations=last, near=True, is_up=is_up)
-        refined = _weighed(self.task, refined, self.watch)
+        refined = weighed(self.task, refined, self.watch)
         fresh = np.concatenate([self.fresh, refined.cost])
         return replace(
             self,
@@ -170,7 +214,7 @@ class Valleys:
 def _bent(task: Task, parents: Refined, rng: np.random.Generator, watch: Watch) -> Refined:
     """Return shapes after bending them at random by a little or more."""
     bent = parents.shapes.varied(_SIZES, _LENGTHS, rng)
-    return _weighed(task, refine(task, bent, iterations=_BENT, near=True, is_up=watch.is_up), watch)
+    return weighed(task, refine(task, bent, iterations=_BENT, near=True, is_up=watch.is_up), watch)
 
 
 def _swapped(task: Task, parents: Refined, rng: np.random.Generator, watch: Watch) -> Refined:
@@ -182,7 +226,7 @@ def _swapped(task: Task, parents: Refined, rng: np.random.Generator, watch: Watc
     first, last = _SWAPPED
     led = refine(task, parents.shapes, angles, iterations=first, is_up=watch.is_up)
     led = refine(task, led.shapes, iterations=last, near=True, is_up=watch.is_up)
-    return _weighed(task, led, watch)
+    return weighed(task, led, watch)
 
 
 def _parents(refined: Refined) -> NDArray[np.intp]:
@@ -200,9 +244,3 @@ def _some_of_each_kind(refined: Refined, count: int) -> NDArray[np.intp]:
     kinds = np.round(np.log(refined.cost[order] + _TINY) / _ALIKE)
     _, first, kind = np.unique(kinds, return_index=True, return_inverse=True)
     return np.asarray(order[np.arange(len(order)) - first[kind] < count])
-
-
-def _weighed(task: Task, refined: Refined, watch: Watch) -> Refined:
-    """Return shapes whose costs say, too, how deep they are inside obstacles or themselves, m^2."""
-    depth = overlaps(task, refined.shapes, refined.joints, is_up=watch.is_up)
-    return replace(refined, cost=refined.cost + np.mean(depth**2, axis=-1))

@@ -17,9 +17,10 @@ import numpy as np
 from synth.robot import Interval
 from synth.synthesis.shapes import Postures, Shapes, TargetsSeen
 from synth.synthesis.starts import (
+    RandomShapes,
+    arms_through_all,
     estimated_misses,
     exact_arms,
-    nearest_to_exact_arms,
     refine,
     relative_weights,
 )
@@ -46,7 +47,7 @@ _ITERATIONS_CALMER = 30
 _PARTS = (0.25, 0.75, 0.5, 0.0, 1.0)  # where it lies, 0 at the beginning of the range, 1 at its end
 _FEW_TARGETS = 8  # that are moved to one after the other
 _FROM_KNOWN = 20  # bent ones of those that are known
-_PER_DESIGN = 3  # shapes looked at near each exact design, where there are any
+_PER_ARM = 3  # shapes looked at near each form of an arm through all targets, where there are any
 _FAR = 0.3  # m; misses are compared up to here
 _ITERATIONS = 12  # of random shapes
 _ITERATIONS_AGAIN = 6  # of bent ones, which are near already
@@ -169,22 +170,20 @@ def _bred(
 
 def _promising(task: Task, led: int, rng: np.random.Generator) -> Shapes:
     """Return random shapes that pass the targets nearly, and some near exact designs."""
-    shapes = _random_shapes(task.robot)
-    misses = np.minimum(estimated_misses(task, shapes), _FAR)
+    random = _random_shapes(task.robot)
+    shapes, misses = random.shapes, np.minimum(estimated_misses(task, random), _FAR)
     order = np.argsort(relative_weights(task) @ misses**2, kind="stable")
     good = rng.permutation(order[:_GOOD])[:_ASKED]
     postures = Postures.nearest(TargetsSeen.of(task), shapes.take(good).kinematics)
     calm = good[np.argsort(swings_of(postures.joints).max(axis=1, initial=0.0), kind="stable")]
     chosen = np.union1d(order[: led - _LED // 2], calm[: _LED // 2])
-    if designs := exact_arms(task):
-        chosen = np.union1d(chosen, nearest_to_exact_arms(shapes, designs, _PER_DESIGN))
-    return shapes.take(chosen)
+    return shapes.take(np.union1d(chosen, random.nearest_to_arms(arms_through_all(task), _PER_ARM)))
 
 
 @lru_cache(maxsize=4)
-def _random_shapes(robot: Robot) -> Shapes:
+def _random_shapes(robot: Robot) -> RandomShapes:
     """Return random shapes of a robot, the same for all of its tasks."""
-    return Shapes.sample(robot, _SHAPES, np.random.default_rng(0))
+    return RandomShapes(Shapes.sample(robot, _SHAPES, np.random.default_rng(0)))
 
 
 def _varied(parents: Shapes, count: int, rng: np.random.Generator) -> Shapes:
