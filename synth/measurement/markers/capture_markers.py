@@ -57,6 +57,25 @@ def arm_tracks(capture: Capture, robot: Robot) -> list[tuple[Track, Marker]]:
     return [(track, marker) for track in capture.tracks if (marker := arm_marker(track.name, robot))]
 
 
+def streamed_markers(names: Iterable[str], robot: Robot, source: str) -> dict[str, Marker]:
+    """Return which of the names in a stream are markers of an arm, as for a capture.
+
+    Args:
+        names: All that the stream has.
+        robot: The hardware.
+        source: What they come from, for the mistakes.
+
+    Raises:
+        InputError: None of them is one of the arm, or one is there twice.
+    """
+    capture = Capture(tuple(Track(name, 0) for name in names), (), 1.0)
+    known = arm_tracks(capture, robot)
+    mistakes = _ambiguous(known, source) if known else [Mistake(_nothing_known(capture, ()), source)]
+    if mistakes:
+        raise InputError(mistakes)
+    return {track.name: marker for track, marker in known}
+
+
 def arm_marker(name: str, robot: Robot) -> Marker | None:
     """Return the marker of a name with or without that of its set before it."""
     return marker_named(name, robot) or marker_named(name.partition(":")[2], robot)
