@@ -1,7 +1,7 @@
 """What was seen last and what is to be done now: written by sources and checker, read for every browser.
 
-A reader that is slow gets the newest of each kind and nothing older: what is shown is never late. No axis of a
-stream is believed to be up: where P1 and P2 show that y or x is, its frame is turned so that z is.
+A reader that is slow gets the newest of each kind and nothing older: what is shown is never late. No axis of
+a stream is believed to be up: where P1 and P2 show that y or x is, its frame is turned so that z is.
 """
 
 from __future__ import annotations

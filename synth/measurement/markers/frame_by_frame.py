@@ -41,7 +41,7 @@ def readings_of_lines(text: str, robot: Robot, joint1: float, source: str) -> Re
 
 
 def readings_of_points(
-    points: Mapping[str, Sequence[float]], markers: Mapping[str, Marker], joint1: float, source: str
+    points: Mapping[str, Sequence[float]], markers: Mapping[str, Marker], joint1: float
 ) -> Readings | None:
     """Return what a frame of a stream shows of an arm; None if it shows none of its markers.
 
@@ -49,7 +49,6 @@ def readings_of_points(
         points: Where each name was seen, m; not a number where it was not.
         markers: Which of the names are markers of the arm.
         joint1: The angle of joint 1, rad. Joint 2 is at 180 deg.
-        source: What they come from, for the mistakes.
 
     Raises:
         InputError: A marker is too far away to be measured in metres.
@@ -61,9 +60,7 @@ def readings_of_points(
     }
     far = [marker.name for marker, point in seen.items() if max(map(abs, point)) > FARTHEST]
     if far:
-        raise InputError(
-            [Mistake(f"is farther than {FARTHEST:.0f} m: which unit is it in?", source, key=far[0])]
-        )
+        raise InputError([Mistake(f"is farther than {FARTHEST:.0f} m: which unit is it in?", key=far[0])])
     return _frame(seen, 1.0, joint1) if seen else None
 
 
