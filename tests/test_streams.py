@@ -207,7 +207,7 @@ def test_the_page_is_served_from_a_tracking_system(kind):
 def test_addresses_are_read_or_refused(tmp_path):
     assert address_of("cameras", 1510) == ("cameras", 1510)
     assert address_of(" 10.0.0.7:99 ", 1510) == ("10.0.0.7", 99)
-    for wrong in ("", ":99", "10.0.0.7:", "10.0.0.7:x", "10.0.0.7:70000", "::1"):
+    for wrong in ("", ":99", "10.0.0.7:", "10.0.0.7:x", "10.0.0.7:70000", "::1", "a..b", 70 * "a"):
         with pytest.raises(SynthError, match="is no address"):
             address_of(wrong, 1510)
     file = write_solution(tmp_path / "solution.json", SOLUTION.task, SOLUTION.designs)

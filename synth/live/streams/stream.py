@@ -58,6 +58,10 @@ def address_of(text: str, port: int) -> tuple[str, int]:
     """
     host, colon, word = text.strip().rpartition(":") if ":" in text else (text.strip(), "", "")
     number = int(word) if word.isascii() and word.isdigit() else 0
+    try:
+        host.encode("idna")  # as the network does it
+    except UnicodeError:
+        host = ""
     if not host or ":" in host or (colon and not 0 < number <= _LARGEST_PORT):
         raise SynthError(f"{text!r} is no address: it must be a host, or a host and a port, such as {port}")
     return host, number or port
