@@ -2,6 +2,7 @@
 
 import json
 import threading
+import time
 import urllib.request
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
@@ -23,6 +24,7 @@ from synth.live.streams.stream import address_of
 from synth.synthesis import solve
 
 FRAME = seen(standing(3)[1], BARS)
+PATIENCE = 20.0  # s, after which what is waited for does not come any more
 NAMES, POINTS = list(FRAME.names), FRAME.positions
 Y_UP = np.stack([POINTS[:, 0], POINTS[:, 2], -POINTS[:, 1]], axis=1)
 
@@ -35,11 +37,9 @@ def fed(stream):
     working.start()
 
     def told(kind):
-        number = 0
-        while True:
-            before = number
-            number, events = feed.after(number, 20.0)
-            assert number > before, f"nothing is told of {kind}"
+        number, deadline = 0, time.monotonic() + PATIENCE
+        while time.monotonic() < deadline:
+            number, events = feed.after(number, PATIENCE)
             yield from (json.loads(data) for each, data in events if each == kind)
 
     try:
