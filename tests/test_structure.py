@@ -11,7 +11,8 @@ from package_files import FILES, FOLDERS, MODULES, PACKAGE, TESTS
 # room everything may use.
 ROOMS = {
     "cli": {"export", "guide", "live", "measurement", "solution_file", "sweep", "synthesis", "task"},
-    "live": {"export", "guide", "measurement", "robot", "synthesis"},
+    "live": {"export", "guide", "live.streams", "measurement", "robot", "synthesis"},
+    "live.streams": set(),
     "sweep": {"export", "solution_file", "synthesis", "task"},
     "solution_file": {"files", "geometry", "paths", "robot", "surfaces", "synthesis", "task"},
     "export.inspection": {"export", "export.sheet", "measurement"},

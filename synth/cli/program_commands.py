@@ -109,6 +109,14 @@ def export(solution: Path, output: Path, *, shape: int, **kinds: bool) -> None:
     help="Take the markers from datagrams to this port of this machine.  [default: lines on stdin]",
 )  # fmt: skip
 @click.option(
+    "--natnet", metavar="HOST",
+    help="Take the markers from Motive (OptiTrack) at HOST or HOST:PORT, by NatNet 3 or 4.",
+)  # fmt: skip
+@click.option(
+    "--qtm", metavar="HOST",
+    help="Take the markers from QTM (Qualisys) at HOST or HOST:PORT.",
+)  # fmt: skip
+@click.option(
     "--replay", metavar="FILE", type=click.Path(path_type=Path),
     help="Take the markers from a recording that `synth check` reads, 100 frames a second.",
 )  # fmt: skip
@@ -125,6 +133,8 @@ def guide(
     live: bool,
     port: int,
     udp: int | None,
+    natnet: str | None,
+    qtm: str | None,
     replay: Path | None,
     speed: float,
     marker_error: float,
@@ -143,15 +153,16 @@ def guide(
     """
     from synth.cli.session import Session, run
 
-    if not live and (udp is not None or replay is not None or port):
-        raise click.UsageError("--port, --udp and --replay are for --live.")
-    if udp is not None and replay is not None:
-        raise click.UsageError("--udp and --replay exclude each other.")
+    told = [each for each in (udp, natnet, qtm, replay) if each is not None]
+    if not live and (told or port):
+        raise click.UsageError("--port, --udp, --natnet, --qtm and --replay are for --live.")
+    if len(told) > 1:
+        raise click.UsageError("--udp, --natnet, --qtm and --replay exclude each other.")
 
     def command(session: Session) -> ExitCode:
         from synth.cli.say import say
         from synth.export import write_page
-        from synth.live import Recording, served_live
+        from synth.live import MotiveStream, QtmStream, Recording, served_live
         from synth.solution_file import load_solution
         from synth.synthesis import showing
 
@@ -162,7 +173,13 @@ def guide(
             for path in write_page(solved, output or solution.parent):
                 say(f"wrote {path}", on_stderr=True)
             return ExitCode.DONE
-        source = Recording(replay, speed) if replay is not None else udp if udp is not None else sys.stdin
+        source: Any = sys.stdin if udp is None else udp
+        if replay is not None:
+            source = Recording(replay, speed)
+        elif natnet is not None:
+            source = MotiveStream(natnet)
+        elif qtm is not None:
+            source = QtmStream(qtm)
         with served_live(solved, source, port, marker_error=marker_error / 1000.0, **how) as address:
             say(address)
             session.goes_on_until_stopped()

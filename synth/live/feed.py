@@ -1,6 +1,7 @@
 """What was seen last and what is to be done now: written by sources and checker, read for every browser.
 
-A reader that is slow gets the newest of each kind and nothing older: what is shown is never late.
+A reader that is slow gets the newest of each kind and nothing older: what is shown is never late. No axis of
+a stream is believed to be up: where P1 and P2 show that y or x is, its frame is turned so that z is.
 """
 
 from __future__ import annotations
@@ -13,10 +14,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.measurement import Readings, axis_up, turn_to_z
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-
-    from synth.measurement import Readings
 
 WINDOW = 0.5  # s: what was seen in this time is measured together, and a marker not seen in it is lost
 _MOST_FRAMES = 1000  # in the window, of a source that is as fast as it can be
@@ -34,6 +35,7 @@ class Feed:
         self._changed = threading.Condition()
         self._frames: deque[tuple[float, Readings]] = deque(maxlen=_MOST_FRAMES)
         self._events: dict[str, tuple[int, str]] = {}
+        self._up = "z"  # of the stream; held while P1 or P2 is not seen
         self._number = 0
         self._seen = 0
         self._closed = False
@@ -60,35 +62,37 @@ class Feed:
             self._changed.wait_for(lambda: self._closed, seconds)
 
     def saw(self, frame: Readings) -> None:
-        """Take a frame: markers with their positions in the base frame."""
+        """Take a frame: markers with their positions in the base frame, but for the axis that is up."""
         with self._changed:
             self._seen += 1
             self._frames.append((self._clock(), frame))
-            latest = {
-                marker.name: (position, joints)
-                for each in self._recent()
-                for marker, position, joints in zip(each.markers, each.positions, each.joints, strict=True)
-            }
+            latest = _newest(self._recent())
+            self._up = axis_up(latest) or self._up
+            latest = self._upright(latest)
         self.publish(
             "frame",
             {
                 "count": self._seen,
                 "at": time.time(),
-                "markers": {name: np.round(place, 6).tolist() for name, (place, _) in latest.items()},
+                "markers": dict(zip(latest.names, np.round(latest.positions, 6).tolist(), strict=True)),
                 "joints": frame.joints[-1].tolist(),
+                "up": self._up,
             },
         )
 
     def recent(self) -> list[Readings]:
-        """Return the frames of the last half second, the oldest first."""
+        """Return the frames of the last half second, the oldest first, with z up."""
         with self._changed:
-            return self._recent()
+            return [self._upright(frame) for frame in self._recent()]
 
     def _recent(self) -> list[Readings]:
         oldest = self._clock() - WINDOW
         while self._frames and self._frames[0][0] < oldest:
             self._frames.popleft()
         return [frame for _, frame in self._frames]
+
+    def _upright(self, frame: Readings) -> Readings:
+        return Readings(frame.markers, frame.positions @ turn_to_z(self._up).T, frame.joints, frame.warnings)
 
     def publish(self, kind: str, content: Mapping[str, object]) -> None:
         """Tell all readers something; it stands in the place of the last of its kind."""
@@ -112,3 +116,13 @@ class Feed:
             self._changed.wait_for(lambda: self._closed or self._number > number, patience)
             told = sorted((at, kind, data) for kind, (at, data) in self._events.items() if at > number)
             return self._number, [(kind, data) for _, kind, data in told]
+
+
+def _newest(frames: list[Readings]) -> Readings:
+    """Return the last that was seen of each marker."""
+    last = {name: (each, k) for each in frames for k, name in enumerate(each.names)}
+    return Readings(
+        tuple(each.markers[k] for each, k in last.values()),
+        np.array([each.positions[k] for each, k in last.values()]),
+        np.array([each.joints[k] for each, k in last.values()]),
+    )

@@ -14,7 +14,8 @@ from synth.export import live_page
 from synth.live.checker import Checker, CheckSettings
 from synth.live.feed import Feed
 from synth.live.server import ADDRESS, page_server
-from synth.live.sources import feed_lines, feed_recording, feed_udp
+from synth.live.sources import feed_lines, feed_recording, feed_stream, feed_udp
+from synth.live.streams import Stream
 from synth.measurement import load_hand, recorded_frames
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ class Recording:
 @contextmanager
 def served_live(
     solution: Solution,
-    source: Recording | int | Iterable[str] | None,
+    source: Recording | Stream | int | Iterable[str] | None,
     port: int,
     *,
     corrections_left: int,
@@ -56,7 +57,7 @@ def served_live(
 
     Args:
         solution: What the link is bent to: the first shape is wanted, the others will do.
-        source: Where frames come from: a recording, the port of datagrams, lines, or nothing.
+        source: Where frames come from: a recording, a stream, the port of datagrams, lines, or nothing.
         port: Where the page is; 0 for any free port.
         corrections_left: How many corrections the operator is still willing to make.
         marker_error: Mean 3D error of a marker, m.
@@ -90,13 +91,15 @@ def _feeding(
     feed: Feed,
     checker: Checker,
     solution: Solution,
-    source: Recording | int | Iterable[str] | None,
+    source: Recording | Stream | int | Iterable[str] | None,
     opened: ExitStack,
 ) -> Callable[[], None]:
     """Return what feeds the frames, once it is known that it can."""
     robot, joint1 = solution.task.robot, checker.joint1
     if isinstance(source, Recording):
         return partial(feed_recording, feed, recorded_frames(source.file, robot, joint1), source.speed)
+    if isinstance(source, Stream):
+        return partial(feed_stream, feed, source, robot, joint1)
     if not isinstance(source, int):
         return partial(feed_lines, feed, source or (), robot, joint1)
     receiver = opened.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))

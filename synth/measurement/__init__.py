@@ -56,6 +56,7 @@ from synth.measurement.markers import (
     Readings,
     StandingArm,
     at_rest,
+    axis_up,
     cross,
     examine,
     examine_file,
@@ -70,10 +71,13 @@ from synth.measurement.markers import (
     matched,
     onto_vertical,
     readings_of_lines,
+    readings_of_points,
     recorded_frames,
     rotation_between,
     rotation_matrix,
     sigma_of,
+    streamed_markers,
+    turn_to_z,
 )
 from synth.measurement.schema import measured_schema
 
@@ -103,6 +107,7 @@ __all__ = [
     "Suspect",
     "aim_of_check",
     "at_rest",
+    "axis_up",
     "calibrate",
     "cross",
     "errors_of_checks",
@@ -129,9 +134,12 @@ __all__ = [
     "onto_vertical",
     "random_errors",
     "readings_of_lines",
+    "readings_of_points",
     "recorded_frames",
     "rotation_between",
     "rotation_matrix",
     "sample_shapes",
     "sigma_of",
+    "streamed_markers",
+    "turn_to_z",
 ]

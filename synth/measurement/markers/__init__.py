@@ -1,9 +1,16 @@
 """Measured markers: where an arm stands, what it is, and how well its errors are known."""
 
 from synth.measurement.markers.arm_fit import ArmFit, fit_arm, marker_positions
+from synth.measurement.markers.capture_markers import streamed_markers
 from synth.measurement.markers.examination import Examination, examine
 from synth.measurement.markers.examined_file import examine_file
-from synth.measurement.markers.frame_by_frame import at_rest, readings_of_lines, recorded_frames
+from synth.measurement.markers.frame_by_frame import (
+    at_rest,
+    readings_of_lines,
+    readings_of_points,
+    recorded_frames,
+)
+from synth.measurement.markers.frames import axis_up, turn_to_z
 from synth.measurement.markers.marker_file import load_points, load_readings, load_unnamed
 from synth.measurement.markers.marker_rows import row_schema
 from synth.measurement.markers.markers import (
@@ -35,6 +42,7 @@ __all__ = [
     "Readings",
     "StandingArm",
     "at_rest",
+    "axis_up",
     "cross",
     "examine",
     "examine_file",
@@ -51,9 +59,12 @@ __all__ = [
     "matched",
     "onto_vertical",
     "readings_of_lines",
+    "readings_of_points",
     "recorded_frames",
     "rotation_between",
     "rotation_matrix",
     "row_schema",
     "sigma_of",
+    "streamed_markers",
+    "turn_to_z",
 ]

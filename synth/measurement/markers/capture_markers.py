@@ -57,6 +57,24 @@ def arm_tracks(capture: Capture, robot: Robot) -> list[tuple[Track, Marker]]:
     return [(track, marker) for track in capture.tracks if (marker := arm_marker(track.name, robot))]
 
 
+def streamed_markers(names: Iterable[str], robot: Robot) -> dict[str, Marker]:
+    """Return which of the names in a stream are markers of an arm, as for a capture.
+
+    Args:
+        names: All that the stream has.
+        robot: The hardware.
+
+    Raises:
+        InputError: None of them is one of the arm, or one is there twice.
+    """
+    capture = Capture(tuple(Track(name, 0) for name in names), (), 1.0)
+    known = arm_tracks(capture, robot)
+    mistakes = _ambiguous(known) if known else [Mistake(_nothing_known(capture, ()))]
+    if mistakes:
+        raise InputError(mistakes)
+    return {track.name: marker for track, marker in known}
+
+
 def arm_marker(name: str, robot: Robot) -> Marker | None:
     """Return the marker of a name with or without that of its set before it."""
     return marker_named(name, robot) or marker_named(name.partition(":")[2], robot)
@@ -72,7 +90,7 @@ def _nothing_known(capture: Capture, solved: Sequence[str]) -> str:
     return f"has no marker of this arm, only {names}; {MARKER_NAMES}" if names else "has no markers"
 
 
-def _ambiguous(known: Sequence[tuple[Track, Marker]], file: str) -> list[Mistake]:
+def _ambiguous(known: Sequence[tuple[Track, Marker]], file: str | None = None) -> list[Mistake]:
     """Return the markers that two sets have."""
     names: dict[str, set[str]] = {}
     for track, marker in known:

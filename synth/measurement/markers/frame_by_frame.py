@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,7 +20,7 @@ from synth.measurement.markers.resting import RestingMarkers
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from synth.robot import Robot
 
@@ -37,6 +38,30 @@ def readings_of_lines(text: str, robot: Robot, joint1: float, source: str) -> Re
         InputError: They are no such lines, or show no marker.
     """
     return readings_of_rows(json_rows(text, source), robot, joint1, source)
+
+
+def readings_of_points(
+    points: Mapping[str, Sequence[float]], markers: Mapping[str, Marker], joint1: float
+) -> Readings | None:
+    """Return what a frame of a stream shows of an arm; None if it shows none of its markers.
+
+    Args:
+        points: Where each name was seen, m; not a number where it was not.
+        markers: Which of the names are markers of the arm.
+        joint1: The angle of joint 1, rad. Joint 2 is at 180 deg.
+
+    Raises:
+        InputError: A marker is too far away to be measured in metres.
+    """
+    seen = {
+        marker: points[name]
+        for name, marker in markers.items()
+        if name in points and all(map(math.isfinite, points[name]))
+    }
+    far = [marker.name for marker, point in seen.items() if max(map(abs, point)) > FARTHEST]
+    if far:
+        raise InputError([Mistake(f"is farther than {FARTHEST:.0f} m: which unit is it in?", key=far[0])])
+    return _frame(seen, 1.0, joint1) if seen else None
 
 
 def recorded_frames(path: str | os.PathLike[str], robot: Robot, joint1: float) -> list[Readings]:
@@ -83,8 +108,13 @@ def _captured(capture: Capture, robot: Robot, joint1: float) -> Iterator[Reading
             if len(point) == 3 and all(abs(value) <= farthest for value in point) and not lost:
                 seen[marker] = point
         if seen:
-            joints = np.tile([joint1, STRAIGHT_ON], (len(seen), 1))
-            yield Readings(tuple(seen), np.array(list(seen.values())) / capture.metre, joints)
+            yield _frame(seen, capture.metre, joint1)
+
+
+def _frame(seen: Mapping[Marker, Sequence[float]], metre: float, joint1: float) -> Readings:
+    """Return what was seen at one time as readings."""
+    joints = np.tile([joint1, STRAIGHT_ON], (len(seen), 1))
+    return Readings(tuple(seen), np.array(list(seen.values()), dtype=np.float64) / metre, joints)
 
 
 def at_rest(frames: Iterable[Readings], source: str) -> Readings:

@@ -55,12 +55,20 @@ def upright(readings: Readings) -> Readings:
 
 def turn_upright(readings: Readings) -> tuple[str, FloatArray]:
     """Return which axis is up, x or y, and the turn that brings it to z; none if it is z, or not shown."""
+    axis = axis_up(readings)
+    return axis if axis in _UP else "", turn_to_z(axis)
+
+
+def axis_up(readings: Readings) -> str:
+    """Return the axis along which the markers on axis 1 point, x, y or z; an empty text if none is shown."""
     found = _axis_1(readings)
-    if found is not None:
-        for axis, words in _UP.items():
-            if found[1]["xyz".index(axis)] >= np.cos(_UPRIGHT):
-                return axis, _FRAMES[words]
-    return "", np.eye(3)
+    along = () if found is None else found[1]
+    return next((axis for axis, part in zip("xyz", along, strict=False) if part >= np.cos(_UPRIGHT)), "")
+
+
+def turn_to_z(axis: str) -> FloatArray:
+    """Return the turn that brings an axis that is up, x or y, to z; none for any other."""
+    return _FRAMES[_UP[axis]] if axis in _UP else np.eye(3)
 
 
 def wrong_base(readings: Readings) -> str:

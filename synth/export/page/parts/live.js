@@ -65,7 +65,7 @@ function makeLive(content, state, view, act) {
   const switched = element("button", { type: "button", className: "quiet", text: "Sound on" });
   switched.onclick = () => (switched.textContent = sound.toggle() ? "Sound off" : "Sound on");
   const node = element("section", { id: "live" }, head, words, enlarged, dials, element("details", {}, element("summary", { text: "In full" }), full), source, switched);
-  const arm = content.shapes[0].arm, base = rigid(arm.joint1), live = { node, markers: {}, check: null, locked: null, connection: "", last: 0, frames: 0, delay: 0 };
+  const arm = content.shapes[0].arm, base = rigid(arm.joint1), live = { node, markers: {}, check: null, locked: null, connection: "", up: "z", last: 0, frames: 0, delay: 0 };
 
   function tell(status, lock, title, message) {
     head.className = `verdict ${status}`;
@@ -87,8 +87,8 @@ function makeLive(content, state, view, act) {
     redraw();
   }
 
-  function see({ count, at, markers, joints }) {
-    Object.assign(live, { markers, last: performance.now(), frames: count, delay: Date.now() / 1000 - at });
+  function see({ count, at, markers, joints, up }) {
+    Object.assign(live, { markers, up, last: performance.now(), frames: count, delay: Date.now() / 1000 - at });
     if (joints.some((angle, k) => Math.abs(angle - state.joints[k]) > 1e-4)) act.joints(joints);
     redraw();
   }
@@ -109,7 +109,8 @@ function makeLive(content, state, view, act) {
     const lost = live.last && performance.now() - live.last > 1500;
     if (lost || live.connection) forget(live.connection || "no marker is seen any more");
     const flow = !live.frames ? "no marker was seen yet" : lost ? "no marker is seen any more" : `${Object.keys(live.markers).length} markers, ${Math.max(0, 1000 * live.delay).toFixed(0)} ms old`;
-    source.textContent = [live.connection, flow, live.source].filter(Boolean).join("; ");
+    const turned = live.up === "z" ? "" : `by P1 and P2 ${live.up} is up in the stream: its frame was turned so that z is`;
+    source.textContent = [live.connection, flow, turned, live.source].filter(Boolean).join("; ");
   }
 
   const events = new EventSource("/events");
