@@ -141,9 +141,9 @@ class ArcChains:
         turned, shifted = _arc_derivatives(k, step[:, None])
         turned, shifted = frames[:, :-1] @ turned, frames[:, :-1] @ shifted
         lever = points[:, -1:] - points[:, 1:]
-        shifted = shifted + np.cross(turned, lever[..., None], axis=2)
+        shifted = shifted + _cross(turned, lever[..., None], axis=2)
         bending = frames[:, :-1, :, 1] * k[..., :1] - frames[:, :-1, :, 0] * k[..., 1:]
-        stretching = np.sum(frames[:, 1:, :, 2] + np.cross(bending, lever), axis=1)
+        stretching = np.sum(frames[:, 1:, :, 2] + _cross(bending, lever, axis=2), axis=1)
         by_share = (self.link.length.middle / self.link.min_bend_radius / self.arcs**1.5) * np.ones((n, 1))
         d_position = np.concatenate([_columns(shifted), (by_share * stretching)[..., None]], axis=-1)
         turning = np.concatenate([_columns(turned), (by_share * np.sum(bending, axis=1))[..., None]], axis=-1)
@@ -204,6 +204,12 @@ def _arc_derivatives(k: FloatArray, length: FloatArray) -> tuple[FloatArray, Flo
         shifted[..., 2, column] = d_sine * along
         shifted[..., column, column] += flat
     return turned, shifted
+
+
+def _cross(one: FloatArray, two: FloatArray, axis: int) -> FloatArray:
+    """Return vector products; for small arrays several times as fast as numpy's own."""
+    (ax, ay, az), (bx, by, bz) = (np.moveaxis(each, axis, 0) for each in (one, two))
+    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=axis)
 
 
 def _columns(by_arc: FloatArray) -> FloatArray:

@@ -74,6 +74,12 @@ class TargetsSeen:
         return cls(base.to_base(task.table.positions[some]), task.robot.joint_limits, rows)
 
     @cached_property
+    def twice(self) -> TargetsSeen:
+        """The same with each target twice, all of them one after the other."""
+        rows = None if self.approaches is None else np.concatenate([self.approaches] * 2, axis=-2)
+        return TargetsSeen(np.concatenate([self.positions] * 2, axis=-2), self.limits, rows)
+
+    @cached_property
     def radial(self) -> FloatArray:
         """Distances from axis 1, shape (n,) or (N, n), m."""
         return np.hypot(self.positions[..., 0], self.positions[..., 1])
@@ -160,13 +166,13 @@ class Postures:
             kinematics: The joints of the shapes, of shape (N,).
             never_away: As for `led_from`.
         """
-        second = aims.limits.second
         branches = kinematics.each_target().branches(aims.positions)[..., 1]
-        both = [
-            cls.led_from(aims, kinematics, into_turn(branches[..., i], second.middle), never_away=never_away)
-            for i in range(2)
-        ]
-        return both[0].where(both[0].squared <= both[1].squared, both[1])
+        theta2 = np.concatenate([branches[..., 0], branches[..., 1]], axis=-1)
+        theta2 = into_turn(theta2, aims.limits.second.middle)
+        both = cls.led_from(aims.twice, kinematics, theta2, never_away=never_away)
+        count = branches.shape[-2]
+        one, other = both.at_some(slice(count)), both.at_some(slice(count, None))
+        return one.where(one.squared <= other.squared, other)
 
     @classmethod
     def led_from(
@@ -215,6 +221,10 @@ class Postures:
     def joints(self) -> FloatArray:
         """Angles (theta1, theta2), shape (N, n, 2), rad."""
         return np.stack([self.theta1, self.theta2], axis=-1)
+
+    def at_some(self, targets: slice) -> Postures:
+        """Return the postures at some of the targets."""
+        return Postures(*(getattr(self, f.name)[..., targets] for f in fields(self)))
 
     def where(self, mine: NDArray[np.bool_], other: Postures) -> Postures:
         """Return these postures where a mask says so and others elsewhere; shape (N, n) or (N, 1)."""

@@ -177,7 +177,12 @@ class Shapes:
 
     def where(self, mine: NDArray[np.bool_], other: Shapes) -> Shapes:
         """Return these shapes where a mask, shape (N,), says so, and others elsewhere."""
-        return replace(self, unknowns=np.where(mine[:, None], self.unknowns, other.unknowns))
+        both = replace(self, unknowns=np.where(mine[:, None], self.unknowns, other.unknowns))
+        if "end" in vars(self) and "end" in vars(other):  # what was computed need not be computed again
+            (frame, place), (frame_there, place_there) = self.end, other.end
+            frames = np.where(mine[:, None, None], frame, frame_there)
+            vars(both)["end"] = frames, np.where(mine[:, None], place, place_there)
+        return both
 
     def arm(self, index: int, base: BasePose) -> Arm:
         """Return one shape as a robot that stands at `base`, or where it says itself."""

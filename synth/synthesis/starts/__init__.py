@@ -1,6 +1,7 @@
 """Start points: shapes at random, led to the targets, the most promising first."""
 
 from synth.synthesis.starts.covering import best_covering
+from synth.synthesis.starts.descent import EXACT
 from synth.synthesis.starts.exact_arms import arms_through_all, exact_arms
 from synth.synthesis.starts.random_shapes import RandomShapes
 from synth.synthesis.starts.refined import Refined, relative_weights
@@ -18,6 +19,7 @@ from synth.synthesis.starts.turned_arms import (
 )
 
 __all__ = [
+    "EXACT",
     "SAMPLE",
     "RandomShapes",
     "Refined",

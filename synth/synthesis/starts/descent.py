@@ -37,7 +37,7 @@ _CLEARING = 10  # steps out of obstacles
 _MARGIN = 4e-3  # m, what to keep from these
 _DIFFERENCE = 1e-5  # of an unknown, which tells which way leads out
 ENOUGH = 20  # shapes that meet all targets, after which the others need not arrive, too
-_EXACT = 1e-13  # m^2, of squared misses that count as that
+EXACT = 1e-13  # m^2, of squared misses that count as that
 _TINY = 1e-30  # m^2
 
 
@@ -62,12 +62,14 @@ class Descent:
         self._exponent = _SQUARES
         self._cost = self._cost_of(shapes, postures)
 
-    def after(self, iterations: int, *, keep_branches: bool, near: bool, enough: int = ENOUGH) -> Refined:
-        """Return the shapes after so many steps."""
+    def after(
+        self, iterations: int, *, keep_branches: bool, near: bool, enough: int = ENOUGH, met: float = EXACT
+    ) -> Refined:
+        """Return the shapes after so many steps, or once enough of them cost no more than what is met."""
         for iteration in range(iterations):
             self._measure_by(_exponent_at(self._task, iteration / iterations, near=near))
             self._step()
-            if np.count_nonzero(self._cost < _EXACT) >= enough or self._is_up():
+            if np.count_nonzero(self._cost < met) >= enough or self._is_up():
                 break
             last = iteration == iterations - 1
             if not (keep_branches or last) and (iteration + 1) % _STEPS_ON_BRANCHES == 0:

@@ -10,7 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from synth.synthesis.shapes import Postures, TargetsSeen
-from synth.synthesis.starts.descent import ENOUGH, Descent
+from synth.synthesis.starts.descent import ENOUGH, EXACT, Descent
 from synth.synthesis.starts.refined import Refined
 from synth.task import Objective
 from synth.watch import never
@@ -38,6 +38,7 @@ def refine(
     *,
     near: bool = False,
     enough: int = ENOUGH,
+    met: float = EXACT,
     is_up: Callable[[], bool] = never,
 ) -> Refined:
     """Improve shapes by damped Gauss-Newton steps, their limits and those of the joints observed.
@@ -53,6 +54,7 @@ def refine(
         iterations: Number of steps; by default enough to arrive, mostly.
         near: Whether the starts were refined before: the norm whose valleys are the widest is left out.
         enough: With so many shapes that meet all targets, of those led together, no more steps are taken.
+        met: The cost with which they do, m^2.
         is_up: Asked after each step whether to end with what there is.
 
     Returns:
@@ -63,7 +65,9 @@ def refine(
         task,
         shapes,
         theta2,
-        lambda descent: descent.after(iterations, keep_branches=theta2 is not None, near=near, enough=enough),
+        lambda descent: descent.after(
+            iterations, keep_branches=theta2 is not None, near=near, enough=enough, met=met
+        ),
         is_up,
     )
 

@@ -84,7 +84,8 @@ class Residuals:
         by_motion = slopes.transpose(0, 2, 1)
         curvature, slope = by_motion @ slopes, (by_motion @ residual[..., None])[..., 0]
         for direction, (owner, target) in self._held_directions(normal, steep):
-            owners, first = np.unique(owner, return_index=True)
+            first = np.flatnonzero(np.diff(owner, prepend=-1))  # they come in order
+            owners = owner[first]
             some = self._slopes(direction, (owner, target)) * root[owner, target, None]
             left = dot(direction, self._postures.miss[:, owner, target]) * root[owner, target]
             curvature[owners] += np.add.reduceat(some[:, :, None] * some[:, None, :], first)

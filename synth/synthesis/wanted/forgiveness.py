@@ -105,7 +105,12 @@ def hand_forgiveness(task: Task, arm: Arm, joints: FloatArray | None = None) -> 
 
 
 def misses_after_a_hand(
-    aims: TargetsSeen, tolerances: FloatArray, kinematics: Kinematics, ends: FloatArray, theta2: FloatArray
+    aims: TargetsSeen,
+    tolerances: FloatArray,
+    kinematics: Kinematics,
+    ends: FloatArray,
+    theta2: FloatArray,
+    errors: int = _ERRORS,
 ) -> tuple[FloatArray, FloatArray]:
     """Return the expected worst misses of many shapes, m, and their chances, both of shape (N,).
 
@@ -115,9 +120,9 @@ def misses_after_a_hand(
         kinematics: The joints of the shapes, of shape (N,).
         ends: Where their links end, shape (N, 3), m.
         theta2: Angles of joint 2 at which they meet the targets, shape (N, n), rad.
+        errors: Over how many errors of a hand: fewer are less exact and sooner done.
     """
-    hand = _hand()
-    count = len(hand.shifts)
+    hand, count = _hand().first(errors), errors
     together = max(1, _TOGETHER // (count * len(tolerances)))
     worst, within = np.empty(len(ends)), np.empty(len(ends))
     for first in range(0, len(ends), together):

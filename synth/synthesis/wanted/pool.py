@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 # What a miss may take of its tolerance: the rest is for rounding.
 _PART_OF_TOLERANCE = 0.9
+_ERRORS = 32  # of a hand, for each shape: a quarter of those by which the best are judged
 _DISTINCT = 0.03  # m, between link ends with axes of ARM_LENGTH
 
 
@@ -70,7 +71,7 @@ class Pool:
         shapes, joints, depth = shapes.take(clear), joints[clear], depth[clear]
         swings = swings_of(joints)
         expected, _ = misses_after_a_hand(
-            aims, task.tolerances, shapes.kinematics, shapes.end[1], joints[..., 1]
+            aims, task.tolerances, shapes.kinematics, shapes.end[1], joints[..., 1], _ERRORS
         )
         table = preferences(
             np.zeros(len(depth)),

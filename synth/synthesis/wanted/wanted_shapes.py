@@ -17,10 +17,11 @@ import numpy as np
 from synth.robot import Interval
 from synth.synthesis.shapes import Postures, Shapes, TargetsSeen
 from synth.synthesis.starts import (
+    EXACT,
     RandomShapes,
+    Refined,
     arms_through_all,
     estimated_misses,
-    exact_arms,
     refine,
     relative_weights,
 )
@@ -60,6 +61,7 @@ _PATIENCE = 3  # rounds that gain next to nothing, after which there is no other
 _COUNTS = 5  # first columns of `preferences`, in which that is asked
 _BESIDE = 0.7  # of the tolerances, by which bent shapes are led beside the targets: else these were of no use
 _TIGHT = 1e-3  # m; targets of smaller tolerances are met exactly: nothing is gained by using those up
+_WELL_WITHIN, _MOST = 0.1, 0.7  # of the tolerances, in the mean; share of the shapes
 _EXACTLY = 0.02  # of its tolerance a miss may take where targets are met exactly
 
 
@@ -86,9 +88,7 @@ def wished(
         if stop():
             return
         for index in pool.distinct():
-            arm = pool.shapes.arm(index, task.base)
-            angles, _ = arm.closest_joints(task.table.positions)
-            yield replace(arm, robot=task.robot), angles
+            yield replace(pool.shapes.arm(index, task.base), robot=task.robot), pool.joints[index]
         if len(pool.table):
             return
 
@@ -150,11 +150,18 @@ def _bred(
     if known:
         shapes = Shapes(narrow.robot, Shapes.joined([Shapes.of(arm) for arm in known]).unknowns)
         beginnings = Shapes.joined([beginnings, _varied(shapes, _FROM_KNOWN, rng)])
-    refined = refine(narrow, beginnings, iterations=iterations, is_up=stop)
+    # Where targets need not be met exactly, nothing is gained by steps once most shapes are well within.
+    met = EXACT if _is_tight(task) else (_WELL_WITHIN * float(task.tolerances.min())) ** 2
+
+    def led_on(task: Task, shapes: Shapes, iterations: int) -> Refined:
+        most = int(_MOST * len(shapes.length))
+        return refine(task, shapes, iterations=iterations, enough=most, met=met, is_up=stop)
+
+    refined = led_on(narrow, beginnings, iterations)
     pool = Pool.of(task, narrow, refined.shapes, stop)
     # Where targets are met exactly and fix finitely many surfaces, bending changes nothing that counts more
     # than the bend itself.
-    finite = _is_tight(task) and exact_arms(narrow) is not None
+    finite = _is_tight(task) and len(arms_through_all(narrow)) > 0
     gained = [np.full(_COUNTS, np.inf)]
     for _ in range(0 if finite else _ROUNDS):
         if stop() or not len(pool.table):
@@ -163,7 +170,7 @@ def _bred(
         if len(gained) > _PATIENCE and (gained[-1] > gained[-1 - _PATIENCE] - 0.2 * STEPS[:_COUNTS]).all():
             break
         bent = _varied(pool.shapes.take(pool.distinct()[:_BENT]), _VARIED, rng)
-        refined = refine(_beside(narrow, rng), bent, iterations=_ITERATIONS_AGAIN, is_up=stop)
+        refined = led_on(_beside(narrow, rng), bent, _ITERATIONS_AGAIN)
         pool = pool.joined(Pool.of(task, narrow, refined.shapes, stop))
     return pool
 
