@@ -8,7 +8,7 @@ from planted import planted_task
 from scipy.spatial.transform import Rotation
 
 from synth.robot import BasePose
-from synth.synthesis.shapes.postures import Postures, TargetsSeen
+from synth.synthesis.shapes import Postures, TargetsSeen
 from synth.synthesis.shapes.shapes import Shapes
 from synth.synthesis.wanted.forgiveness import hand_forgiveness, misses_after_a_hand
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from planted import ROBOT, noisy, planted_task
 
-from synth.synthesis.shapes.postures import Postures, TargetsSeen
+from synth.synthesis.shapes import Postures, TargetsSeen
 from synth.synthesis.shapes.shapes import Shapes, in_equal_arcs, into_limits
 from synth.synthesis.starts.descent import _curvature_of_norm
 from synth.synthesis.starts.refinement import level, refine

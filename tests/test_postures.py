@@ -7,7 +7,8 @@ import pytest
 from planted import ROBOT
 
 from synth.robot import BasePose, Interval, JointLimits
-from synth.synthesis.shapes.postures import Postures, TargetsSeen, dot
+from synth.synthesis.shapes import TargetsSeen
+from synth.synthesis.shapes.postures import Postures, dot
 from synth.synthesis.shapes.shapes import Shapes
 
 NARROW = JointLimits(Interval(-1.0, 2.0), Interval(2.0, 4.0))

@@ -8,9 +8,9 @@ from planted import ROBOT, noisy, planted_task
 
 from synth.geometry import Sphere
 from synth.robot import BasePose, Interval, JointLimits, RigidLink
+from synth.synthesis.shapes import Postures, TargetsSeen
 from synth.synthesis.shapes.category_offsets import category_offsets, category_slopes
 from synth.synthesis.shapes.overlaps import overlaps
-from synth.synthesis.shapes.postures import Postures, TargetsSeen
 from synth.synthesis.shapes.shapes import Shapes, in_equal_arcs, into_limits
 from synth.synthesis.starts.refined import relative_weights
 from synth.synthesis.starts.refinement import cleared, refine

@@ -4,8 +4,9 @@ from synth.synthesis.shapes.category_offsets import category_offsets, category_s
 from synth.synthesis.shapes.circles import ARM_LENGTH, circles_of_designs, circles_of_shapes
 from synth.synthesis.shapes.columns import ARCS
 from synth.synthesis.shapes.overlaps import overlaps
-from synth.synthesis.shapes.postures import Postures, TargetsSeen, dot, pointing_off
+from synth.synthesis.shapes.postures import Postures, dot, pointing_off
 from synth.synthesis.shapes.shapes import Shapes, in_equal_arcs
+from synth.synthesis.shapes.targets_seen import TargetsSeen
 
 __all__ = [
     "ARCS",

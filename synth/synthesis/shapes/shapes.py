@@ -163,7 +163,7 @@ class Shapes:
             lengths: By how much lengths change beside that, m; and the numbers of the base, m and rad.
             rng: Source of randomness.
         """
-        size = rng.choice(sizes, (len(self.unknowns), 1)) * np.ones(self.unknowns.shape)
+        size = np.tile(rng.choice(sizes, (len(self.unknowns), 1)), self.unknowns.shape[1])
         size[:, LENGTH:] *= lengths
         return self.moved(size * rng.normal(size=size.shape))
 
@@ -177,12 +177,7 @@ class Shapes:
 
     def where(self, mine: NDArray[np.bool_], other: Shapes) -> Shapes:
         """Return these shapes where a mask, shape (N,), says so, and others elsewhere."""
-        both = replace(self, unknowns=np.where(mine[:, None], self.unknowns, other.unknowns))
-        if "end" in vars(self) and "end" in vars(other):  # what was computed need not be computed again
-            (frame, place), (frame_there, place_there) = self.end, other.end
-            frames = np.where(mine[:, None, None], frame, frame_there)
-            vars(both)["end"] = frames, np.where(mine[:, None], place, place_there)
-        return both
+        return _where(mine, self, other)
 
     def arm(self, index: int, base: BasePose) -> Arm:
         """Return one shape as a robot that stands at `base`, or where it says itself."""
@@ -191,6 +186,16 @@ class Shapes:
         if self.places is not None:
             base = self.places.pose(self.bases.rows[index])
         return Arm(self.robot, shape, float(d35[index]), float(d45[index]), base)
+
+
+def _where(mine: NDArray[np.bool_], one: Shapes, other: Shapes) -> Shapes:
+    """Return one's shapes or the other's, with their ends where both have them: none is computed again."""
+    both = replace(one, unknowns=np.where(mine[:, None], one.unknowns, other.unknowns))
+    if "end" in vars(one) and "end" in vars(other):
+        (frame, place), (frame_there, place_there) = one.end, other.end
+        frames = np.where(mine[:, None, None], frame, frame_there)
+        vars(both)["end"] = frames, np.where(mine[:, None], place, place_there)
+    return both
 
 
 def in_equal_arcs(arm: Arm) -> Arm:
