@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from synth.watch import Watch
 
 _ROUNDS = 10  # of the three steps
+_IDLE, _GAIN = 3, 2e-4  # rounds without a gain, of the least cost, after which there is no other
 _KEPT = 400  # shapes
 _PARENTS = 20  # of these, which miss differently
 _BEST_PARENTS = 2  # to whom half of the children go
@@ -162,7 +163,7 @@ class Valleys:
             draw: Draws fresh shapes.
             rng: Source of randomness.
         """
-        now = replace(self, best=self.best.best(_KEPT))
+        now, idle = replace(self, best=self.best.best(_KEPT)), 0
         for _ in range(_ROUNDS):
             before = float(now.best.cost.min())
             for step in (_bent, _swapped):
@@ -172,16 +173,16 @@ class Valleys:
                 children = step(self.task, now.best.take(_parents(now.best)), rng, self.watch)
                 now = now.with_better(children)
             now = now.with_fresh(draw())
-            if now.is_settled_since(before):
+            idle = idle + 1 if now.best.cost.min() > (1.0 - _GAIN) * before else 0
+            if now.is_settled_after(idle):
                 return now
         return now
 
-    def is_settled_since(self, before: float) -> bool:
-        """Whether a round gained nothing on a valley, of least cost `before`, that all ways had led to."""
+    def is_settled_after(self, idle: int) -> bool:
+        """Whether so many rounds that gained nothing are enough: one, where all ways led there."""
         by_fresh, by_algebra = self._in_the_best
-        least = float(self.best.cost.min())
-        gained = before > (1.0 + _SAME) * least
-        return least > _SHEETS and not gained and by_fresh >= _ENOUGH and by_algebra >= _LED
+        both = by_fresh >= _ENOUGH and by_algebra >= _LED
+        return float(self.best.cost.min()) > _SHEETS and idle >= (1 if both else _IDLE)
 
     def with_fresh(self, shapes: Shapes) -> Valleys:
         """Return what is known with some more fresh shapes, the worst of which are given up half-way."""
