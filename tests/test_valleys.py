@@ -47,7 +47,7 @@ def test_valleys_are_agreed_upon_when_a_share_of_the_fresh_shapes_ended_in_the_b
 
 
 def test_fewer_fresh_shapes_are_enough_where_algebra_leads_there_too():
-    fresh = [0.02] * 3 + [0.03] * 37
+    fresh = [0.02] * 6 + [0.03] * 34
     assert not valleys_of(*fresh, drawn=40).agreed
     assert not valleys_of(*fresh, drawn=40, led=[0.02, 0.03]).agreed
     assert valleys_of(*fresh, drawn=40, led=[0.02, 0.02, 0.03]).agreed

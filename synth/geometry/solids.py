@@ -143,9 +143,11 @@ class Box:
 
     def distance(self, points: FloatArray) -> FloatArray:
         """Return the signed distance of points, shape (..., 3), m; shape (...), negative inside."""
-        beyond = np.abs(self._inside_frame(points)) - 0.5 * self.size
-        outside = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1)
-        return np.asarray(outside + np.minimum(beyond.max(axis=-1), 0.0))
+        # Coordinate by coordinate: along an axis of three, numpy is several times as slow.
+        x, y, z = np.moveaxis(np.abs(self._inside_frame(points)) - 0.5 * self.size, -1, 0)
+        ox, oy, oz = (np.maximum(each, 0.0) for each in (x, y, z))
+        inside = np.minimum(np.maximum(np.maximum(x, y), z), 0.0)
+        return np.asarray(np.sqrt(ox * ox + oy * oy + oz * oz) + inside)
 
     def outward(self, points: FloatArray) -> FloatArray:
         """Return the direction in which the distance grows, shape (..., 3), without unit."""

@@ -72,6 +72,23 @@ def refine(
     )
 
 
+def refine_the_best(
+    task: Task, shapes: Shapes, steps: tuple[int, int], one_in: int, is_up: Callable[[], bool] = never
+) -> Refined:
+    """Improve shapes by some steps, and only the best of them by more.
+
+    Args:
+        task: The task.
+        shapes: The starts, of shape (N,).
+        steps: How many at first, and how many more.
+        one_in: Of how many one goes on.
+        is_up: As for `refine`.
+    """
+    first, more = steps
+    refined = refine(task, shapes, iterations=first, is_up=is_up).best(-(-len(shapes.length) // one_in))
+    return refine(task, refined.shapes, iterations=more, near=True, is_up=is_up)
+
+
 def _descents(
     task: Task,
     shapes: Shapes,

@@ -16,7 +16,7 @@ from synth.synthesis.starts.descent import ENOUGH
 from synth.synthesis.starts.exact_arms import arms_near_all, arms_through_all
 from synth.synthesis.starts.random_shapes import shapes_for
 from synth.synthesis.starts.refined import meets_all, relative_weights, weighed
-from synth.synthesis.starts.refinement import refine
+from synth.synthesis.starts.refinement import refine, refine_the_best
 from synth.synthesis.starts.screening import screened
 from synth.synthesis.starts.thinning import thinned
 from synth.synthesis.starts.turned_arms import as_it_is_and_turned
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 _MOST = 40  # targets that are searched with
 # At first few shapes, the best, are led to the targets, until some meet all: mostly that is the answer.
 _LOOKED_AT, _LOOKS, _FEW = 40, 16, 3
+_LED = (8, 12)  # steps of shapes near arms that pass near all targets; the better half goes on
 _MORE_LOOKS = 6  # steps, where none of them does
 _REFINED = 200  # shapes: half of them the best, half at random from the good ones
 _GOOD = 4_000  # the best of the screening, which knows nothing of the valleys
@@ -131,8 +132,9 @@ def _starts(task: Task, seed: int, rng: np.random.Generator, watch: Watch, *, qu
     yield from distinct.of(exact.take(meets_all(task, exact)))
     fresh = looked_at.take(np.arange(min(_LOOKED_AT, len(order))))
     fresh = refine(task, fresh.shapes, iterations=_MORE_LOOKS, near=True, is_up=watch.is_up)
-    near = random.nearest_to_arms(arms_near_all(task), 1)
-    valleys = Valleys.of(task, fresh, led(near) if len(near) else None, watch)
+    near = shapes.take(random.nearest_to_arms(arms_near_all(task), 1))
+    ended = refine_the_best(task, near, _LED, 2, watch.is_up) if len(near.length) else None
+    valleys = Valleys.of(task, fresh, ended, watch)
     if not valleys.agreed:
         valleys = valleys.joined(led(np.union1d(best[_LOOKED_AT:], drawn(_REFINED // 2, _GOOD))))
     if not valleys.agreed:

@@ -22,7 +22,7 @@ import numpy as np
 from synth.arrays import frozen_value
 from synth.synthesis.shapes import overlaps
 from synth.synthesis.starts.refined import Refined, meets_all, weighed
-from synth.synthesis.starts.refinement import cleared, level, refine
+from synth.synthesis.starts.refinement import cleared, level, refine, refine_the_best
 from synth.task import Objective
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from synth.watch import Watch
 
 _ROUNDS = 10  # of the three steps
-_IDLE, _GAIN = 3, 2e-4  # rounds without a gain, of the least cost, after which there is no other
+_IDLE, _GAIN = 5, 2e-4  # rounds without a gain, of the least cost, after which there is no other
 _KEPT = 400  # shapes
 _PARENTS = 20  # of these, which miss differently
 _BEST_PARENTS = 2  # to whom half of the children go
@@ -52,8 +52,8 @@ _ALIKE = 0.01  # costs that differ by less than this part are those of one valle
 # It is enough if so many shapes meet all targets, or if so many fresh ones, and such a share, end alike.
 _ENOUGH = 5
 _DRAWN, _AGREEING = 150, 0.05
-# Or, where so many shapes that algebra led ended alike, so many fresh ones, and such a share.
-_LED, _ENOUGH_TOGETHER, _AGREEING_TOGETHER = 2, 3, 0.025
+# Or, of however few, if so many shapes that algebra led ended alike, and such a share of the fresh ones.
+_LED, _AGREEING_TOGETHER = 2, 0.15
 _SAME = 1e-3  # part of the least cost by which those differ at most
 # But with a cost below this, m^2, the workspace may have two sheets so close together that most shapes end
 # with some targets on the wrong one.
@@ -139,22 +139,16 @@ class Valleys:
     def agreed(self) -> bool:
         """Whether enough shapes meet all targets, or enough of them ended in the best valley.
 
-        Fewer fresh ones are enough where algebra leads there, too: it knows nothing of them.
+        Of fewer fresh ones that is enough where algebra leads there, too: it knows nothing of them.
         """
         if np.count_nonzero(meets_all(self.task, self.best)) >= _ENOUGH:
             return True
-        by_fresh, by_algebra = self._in_the_best
-        alone = self.drawn >= _DRAWN and by_fresh >= max(_AGREEING * self.drawn, _ENOUGH)
-        together = by_algebra >= _LED and by_fresh >= max(_AGREEING_TOGETHER * self.drawn, _ENOUGH_TOGETHER)
-        squares = self.task.objective is Objective.LEAST_SQUARES
-        return float(self.best.cost.min()) > _SHEETS and (alone or (squares and together))
-
-    @property
-    def _in_the_best(self) -> tuple[int, int]:
-        """How many fresh shapes ended in the best valley, and how many of those that algebra led."""
         same = (1.0 + _SAME) * self.best.cost.min()
         by_fresh, by_algebra = (int(np.count_nonzero(ended <= same)) for ended in (self.fresh, self.led))
-        return by_fresh, by_algebra
+        alone = self.drawn >= _DRAWN and by_fresh >= max(_AGREEING * self.drawn, _ENOUGH)
+        together = by_algebra >= _LED and by_fresh >= _AGREEING_TOGETHER * self.drawn
+        squares = self.task.objective is Objective.LEAST_SQUARES
+        return float(self.best.cost.min()) > _SHEETS and (alone or (squares and together))
 
     def explored(self, draw: Callable[[], Shapes], rng: np.random.Generator) -> Valleys:
         """Return what is known after a search for better valleys.
@@ -174,23 +168,13 @@ class Valleys:
                 now = now.with_better(children)
             now = now.with_fresh(draw())
             idle = idle + 1 if now.best.cost.min() > (1.0 - _GAIN) * before else 0
-            if now.is_settled_after(idle):
+            if idle == _IDLE and now.best.cost.min() > _SHEETS:
                 return now
         return now
 
-    def is_settled_after(self, idle: int) -> bool:
-        """Whether so many rounds that gained nothing are enough: one, where all ways led there."""
-        by_fresh, by_algebra = self._in_the_best
-        both = by_fresh >= _ENOUGH and by_algebra >= _LED
-        return float(self.best.cost.min()) > _SHEETS and idle >= (1 if both else _IDLE)
-
     def with_fresh(self, shapes: Shapes) -> Valleys:
         """Return what is known with some more fresh shapes, the worst of which are given up half-way."""
-        first, last = _FRESH
-        is_up = self.watch.is_up
-        refined = refine(self.task, shapes, iterations=first, is_up=is_up)
-        refined = refined.best(len(shapes.length) // _GO_ON)
-        refined = refine(self.task, refined.shapes, iterations=last, near=True, is_up=is_up)
+        refined = refine_the_best(self.task, shapes, _FRESH, _GO_ON, self.watch.is_up)
         refined = weighed(self.task, refined, self.watch)
         fresh = np.concatenate([self.fresh, refined.cost])
         return replace(

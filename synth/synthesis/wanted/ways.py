@@ -34,7 +34,7 @@ MOST_MOTIONS = 50  # of more targets nobody asks for the ways between them
 # The search for a way around: angles on a grid, samples of tube and rod, and the clearances to keep at these,
 # m, one after the other.
 _GRID = (91, 64)
-_SAMPLES, _FEW = 24, 8  # one of so many joint angles on a way tells mostly that it is not clear
+_SAMPLES = 24
 _MARGINS = (0.02, 0.008, 0.003)
 _STEP = 0.02  # rad, between postures that are looked at when a way is straightened
 _NO_WAY = 1e6  # rad of travel that a missing way is worth: more than any ways
@@ -142,29 +142,35 @@ class _WaysAround(Surroundings):
             nodes = shortest_path(sampled > margin, _node(grid, start), _node(grid, end))
             if nodes is None:
                 continue
-            way = self._straightened(np.array([start, *(grid[node] for node in nodes), end]), margin)
+            corners = np.array([start, *(grid[node] for node in nodes), end])
+            way = self._straightened(corners, margin, lambda steps: _between(sampled, grid, steps))
             if self.clear(way[:-1], way[1:]).all():
                 return way
         return np.empty((0, 2))
 
-    def _straightened(self, way: FloatArray, margin: float) -> FloatArray:
-        """Return the way with as few corners as samples allow."""
+    def _straightened(
+        self, way: FloatArray, margin: float, told: Callable[[FloatArray], FloatArray]
+    ) -> FloatArray:
+        """Return the way with as few corners as samples allow.
+
+        Args:
+            way: Its corners, shape (m, 2), rad.
+            margin: What to keep from everything, m.
+            told: About what is known of clearances at joint angles, (k, 2): it rules out most pieces.
+        """
         kept, here = [way[0]], 0
         while here < len(way) - 1:
             for there in range(len(way) - 1, here, -1):
                 count = 2 + int(np.abs(way[there] - way[here]).max() / _STEP)
                 steps = way[here] + np.linspace(0.0, 1.0, count)[:, None] * (way[there] - way[here])
                 # At the targets themselves it may be narrower.
-                if there == here + 1 or self._keeps_off(steps, 0.5 * margin):
+                if there == here + 1 or (
+                    (told(steps) > 0.0).all() and (self._sampled_clearance(*steps.T) > 0.5 * margin).all()
+                ):
                     break
             kept.append(way[there])
             here = there
         return np.array(kept)
-
-    def _keeps_off(self, steps: FloatArray, margin: float) -> bool:
-        """Whether samples keep more than a margin at joint angles, (k, 2), a few of which are asked first."""
-        parts = steps[_FEW // 2 :: _FEW], steps
-        return all(bool((self._sampled_clearance(*some.T) > margin).all()) for some in parts)
 
     def _sampled_clearance(self, theta1: FloatArray, theta2: FloatArray) -> FloatArray:
         """Return about how far tube and rod keep from everything, by samples, m.
@@ -200,6 +206,17 @@ def _before_the_joint(body: ArmBody, share: FloatArray) -> NDArray[np.intp]:
     """Return which samples of the tube are farther than a diameter from the joint, one at least."""
     clear = share * body.arm.shape.length <= body.arm.shape.length - body.arm.robot.link.diameter
     return np.flatnonzero(clear)
+
+
+def _between(values: FloatArray, grid: FloatArray, joints: FloatArray) -> FloatArray:
+    """Return values on a grid of joint angles, (k, l), at angles between its nodes, (m, 2), linearly."""
+    spacing = grid[1, 1] - grid[0, 0]
+    at = (joints - grid[0, 0]) / np.where(spacing > 0.0, spacing, 1.0)
+    low = np.clip(at.astype(np.intp), 0, np.subtract(values.shape, 2))
+    (i, j), (x, y) = low.T, (at - low).T
+    one = (1.0 - y) * values[i, j] + y * values[i, j + 1]
+    other = (1.0 - y) * values[i + 1, j] + y * values[i + 1, j + 1]
+    return np.asarray((1.0 - x) * one + x * other)
 
 
 def _node(grid: FloatArray, joints: FloatArray) -> tuple[int, int]:
