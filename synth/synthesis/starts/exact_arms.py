@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from synth.task import Task
 
 _SETS = 10  # of as few targets as fix an arm, among whose arms is one through all targets, if there is one
-_THROUGH = 3  # of these arms, the nearest, that may be all
+_THROUGH = 6  # of these arms, at most: so many may pass through as few targets
 _SETS_OF_MANY, _NEAR = 60, 40  # sets where no arm passes through all; arms near all that are looked at
 
 
