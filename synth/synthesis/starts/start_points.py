@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import frozen_value
-from synth.synthesis.starts.descent import ENOUGH
 from synth.synthesis.starts.exact_arms import arms_near_all, arms_through_all
 from synth.synthesis.starts.random_shapes import shapes_for
 from synth.synthesis.starts.refined import meets_all, relative_weights, weighed
@@ -31,6 +30,8 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.robot import Arm
+    from synth.synthesis.shapes import Shapes
+    from synth.synthesis.starts.random_shapes import RandomShapes
     from synth.synthesis.starts.refined import Refined
     from synth.task import Task
 
@@ -38,8 +39,8 @@ if TYPE_CHECKING:
 _MOST = 40  # targets that are searched with
 # At first few shapes, the best, are led to the targets, until some meet all: mostly that is the answer.
 _LOOKED_AT, _LOOKS, _FEW = 40, 16, 3
-_LED = (8, 12)  # steps of shapes near arms that pass near all targets; the better half goes on
 _MORE_LOOKS = 6  # steps, where none of them does
+_LED, _GO_ON = (8, 12), 2  # steps of shapes near arms that pass near all targets; the better half goes on
 _REFINED = 200  # shapes: half of them the best, half at random from the good ones
 _GOOD = 4_000  # the best of the screening, which knows nothing of the valleys
 _FRESH = 10_000  # the best, from which fresh ones are drawn
@@ -106,41 +107,62 @@ def start_points(
 
 def _starts(task: Task, seed: int, rng: np.random.Generator, watch: Watch, *, quick: bool) -> Iterator[Start]:
     """Yield start points for a task of few targets, each step with more effort than the one before."""
-    random = shapes_for(task, seed)
-    shapes = random.shapes
-    if not len(shapes.length):
+    random, distinct = _Ranked(task, shapes_for(task, seed), rng, watch), _Distinct(task)
+    if not random.count:
         return
-    cost = screened(task, random)
-    # Among near misses the gentle bends come first: the refinement sees to the rest.
-    cost = np.maximum(cost, _NEAR**2) + _GENTLER * random.bending
-    order = np.argsort(cost, kind="stable")
-
-    def drawn(count: int, most: int) -> NDArray[np.intp]:
-        return rng.choice(order[:most], min(count, most, len(order)), replace=False)
-
-    def led(chosen: NDArray[np.intp], iterations: int | None = None, enough: int = ENOUGH) -> Refined:
-        return refine(task, shapes.take(chosen), iterations=iterations, enough=enough, is_up=watch.is_up)
-
-    distinct, best = _Distinct(task), order[: _REFINED // 2]
     if quick:
-        fresh = led(np.union1d(best, drawn(_REFINED // 2, _GOOD)))
-        yield from distinct.of(Valleys.of(task, fresh, None, watch).promising)
+        yield from distinct.of(Valleys.of(task, random.many(but=0), None, watch).promising)
         return
-    through_all = random.nearest_to_arms(arms_through_all(task), _PER_ARM)
-    looked_at = led(np.concatenate([order[:_LOOKED_AT], through_all]), iterations=_LOOKS, enough=_FEW)
+    looked_at = random.few()
     exact = weighed(task, looked_at.take(meets_all(task, looked_at)), watch)
     yield from distinct.of(exact.take(meets_all(task, exact)))
-    fresh = looked_at.take(np.arange(min(_LOOKED_AT, len(order))))
-    fresh = refine(task, fresh.shapes, iterations=_MORE_LOOKS, near=True, is_up=watch.is_up)
-    near = shapes.take(random.nearest_to_arms(arms_near_all(task), 1))
-    ended = refine_the_best(task, near, _LED, 2, watch.is_up) if len(near.length) else None
-    valleys = Valleys.of(task, fresh, ended, watch)
+    few = looked_at.take(np.arange(min(_LOOKED_AT, random.count)))
+    few = refine(task, few.shapes, iterations=_MORE_LOOKS, near=True, is_up=watch.is_up)
+    valleys = Valleys.of(task, few, random.near_arms(), watch)
     if not valleys.agreed:
-        valleys = valleys.joined(led(np.union1d(best[_LOOKED_AT:], drawn(_REFINED // 2, _GOOD))))
+        valleys = valleys.joined(random.many(but=_LOOKED_AT))
     if not valleys.agreed:
         yield from distinct.of(valleys.within_tolerance)
-        valleys = valleys.explored(lambda: shapes.take(drawn(_REFINED, _FRESH)), rng)
+        valleys = valleys.explored(lambda: random.drawn(_FRESH), rng)
     yield from distinct.of(valleys.promising)
+
+
+class _Ranked:
+    """Random shapes, those first that pass the targets nearest: some of them, led to the targets."""
+
+    def __init__(self, task: Task, random: RandomShapes, rng: np.random.Generator, watch: Watch) -> None:
+        self._task, self._random, self._rng, self._watch = task, random, rng, watch
+        # Among near misses the gentle bends come first: the refinement sees to the rest.
+        cost = np.maximum(screened(task, random), _NEAR**2) + _GENTLER * random.bending
+        self._order = np.argsort(cost, kind="stable")
+        self.count = len(cost)
+
+    def few(self) -> Refined:
+        """Return the best, and shapes near arms through all targets with them, until some meet all."""
+        near = self._random.nearest_to_arms(arms_through_all(self._task), _PER_ARM)
+        chosen = self._random.shapes.take(np.concatenate([self._order[:_LOOKED_AT], near]))
+        return refine(self._task, chosen, iterations=_LOOKS, enough=_FEW, is_up=self._watch.is_up)
+
+    def many(self, *, but: int) -> Refined:
+        """Return the best but for some, and as many at random of the good ones."""
+        best, good = self._order[but : _REFINED // 2], self._any(_REFINED // 2, _GOOD)
+        chosen = self._random.shapes.take(np.union1d(best, good))
+        return refine(self._task, chosen, is_up=self._watch.is_up)
+
+    def near_arms(self) -> Refined | None:
+        """Return shapes near arms that pass near all targets, if there are any."""
+        near = self._random.nearest_to_arms(arms_near_all(self._task), 1)
+        if not len(near):
+            return None
+        shapes = self._random.shapes.take(near)
+        return refine_the_best(self._task, shapes, _LED, _GO_ON, self._watch.is_up)
+
+    def drawn(self, most: int) -> Shapes:
+        """Return fresh shapes, at random of so many of the best."""
+        return self._random.shapes.take(self._any(_REFINED, most))
+
+    def _any(self, count: int, most: int) -> NDArray[np.intp]:
+        return self._rng.choice(self._order[:most], min(count, most, self.count), replace=False)
 
 
 class _Distinct:
