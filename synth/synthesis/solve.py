@@ -45,7 +45,7 @@ def solve(
         alternatives: How many other shapes are looked for once one reaches every target: those that a person
             would want, which see `ranking`; where there are none, so many other start points are polished.
             Where no shape reaches every target, at most two are polished that promise nothing better than the
-            best. 0 gives the first shape, in half the time, wherever it leans.
+            best. 0 gives the first shape, several times as fast, wherever it leans.
         prove: Whether to bound how little any shape can miss; that takes seconds, or about a minute.
         time_limit: Time after which the best shape so far is returned, s.
         stop: Polled many times a second; return True to stop with the best shape so far.
