@@ -11,7 +11,7 @@ import numpy as np
 from synth.synthesis.polishing import Polishing
 from synth.synthesis.shapes import in_equal_arcs
 from synth.synthesis.starts import Start, start_points
-from synth.synthesis.wanted import Design, best_of, leaves_no_wish, objective, wished
+from synth.synthesis.wanted import Design, best_of, has_all_ways, leaves_no_wish, objective, wished
 from synth.task import Objective, PointTarget, TargetTable
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ _STARTS_WHEN_IMPOSSIBLE = 12  # for a good best effort
 _FOLLOWED = 2  # shapes of a neighbour that are polished
 ALTERNATIVES = 2  # shapes looked for after one was found, or else starts polished
 _LOOKED_AT = 4  # shapes that a person would want, for each alternative
+_MORE = 2  # than the alternatives, with all ways, of which none need leave nothing to wish for
 _ALTERNATIVES_THAT_MISS = 2  # likewise, at most, where no shape meets all targets
 _GAIN = 1e-3  # of the objective: the least that is worth another start
 _BETWEEN, _STARTS_BETWEEN = 20, 6  # points that join the targets of a search; starts polished then
@@ -122,7 +123,8 @@ class Search:
     def _wished_for(self) -> bool:
         """Look for shapes that a person would rather have than the first one; whether there are any."""
         known = [design.arm for design in self.polishing.designs if design.verification.found]
-        found, wanted, candidates = 0, 0, wished(self._task, known, self._seed, self._watch.is_up)
+        found, wanted, passable = 0, 0, 0
+        candidates = wished(self._task, known, self._seed, self._watch.is_up)
         for _ in range(_LOOKED_AT * self._alternatives):
             with self._watch.on("solving"):
                 candidate = next(candidates, None)
@@ -132,9 +134,10 @@ class Search:
             if design.verification.found:
                 found += 1
                 wanted += leaves_no_wish(design.figures)  # by its ways, not only by where they end
+                passable += has_all_ways(design.figures)
                 if found == 1:  # the most wanted one may be had with a gentler bend
                     self.polishing.polish(Start(design.arm, design.verification.joints), near=True)
-            if wanted == self._alternatives:
+            if wanted == self._alternatives or passable == self._alternatives + _MORE:
                 break
         return found > 0
 

@@ -45,6 +45,10 @@ def chosen_joints(
         (n,); and the room about the arm there.
     """
     targets = task.table.positions
+    if keep and given is not None and _reaching(task, arm, given):
+        room = Clearances.of(task, arm, given)
+        if room.clear.all():  # as mostly, and then nothing else is asked for
+            return given, np.zeros(len(targets), dtype=np.bool_), room
     closest, _ = arm.closest_joints(targets)
     candidates = np.stack([closest] if given is None else [closest, given])
     elsewhere = _LAST * points_elsewhere(task, arm, candidates)
@@ -70,6 +74,12 @@ def chosen_joints(
         chosen[stuck], sunk[stuck] = candidates[best, each], np.isinf(misses[best, each])
         room = Clearances.of(task, arm, chosen)
     return chosen, sunk, room
+
+
+def _reaching(task: Task, arm: Arm, joints: FloatArray) -> bool:
+    """Return whether all targets are within tolerance at joint angles, shape (n, 2), rad, and pointed at."""
+    near = _misses(task, arm, joints, task.table.positions) <= task.tolerances
+    return bool((near & ~points_elsewhere(task, arm, joints)).all())
 
 
 def _misses(task: Task, arm: Arm, candidates: FloatArray, targets: FloatArray) -> FloatArray:

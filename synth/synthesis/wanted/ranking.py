@@ -93,6 +93,11 @@ def leaves_no_wish(figures: Figures | None) -> bool:
     return figures is not None and is_content(_row(figures))
 
 
+def has_all_ways(figures: Figures | None) -> bool:
+    """Whether a shape has a way from each target to the next."""
+    return figures is not None and not figures.ways_missing
+
+
 def is_content(row: FloatArray) -> bool:
     """Whether a row of `preferences` leaves nothing to wish for in ways, margins and swings."""
     return bool((row[_WITH_END] < STEPS[_WITH_END]).all())
