@@ -202,3 +202,13 @@ def test_shapes_are_moved_out_of_an_obstacle_though_only_the_rigid_link_is_in_it
     now = overlaps(task, after.shapes, after.joints).max(axis=1)
     assert len(now)
     assert np.median(now) < 0.2 * np.median(depth[depth > 0.0])
+
+
+def test_shapes_chosen_of_two_keep_the_ends_that_were_computed():
+    one, other = (Shapes.sample(ROBOT, 6, np.random.default_rng(seed)) for seed in (0, 1))
+    assert one.end[1].shape == other.end[1].shape == (6, 3)  # computed, and so kept
+    chosen = one.where(np.array([True, False, True, False, False, True]), other)
+    again = Shapes(ROBOT, chosen.unknowns)
+    assert "end" in vars(chosen)
+    for kept, fresh in zip(chosen.end, again.end, strict=True):
+        assert np.allclose(kept, fresh, rtol=0.0, atol=1e-15)
