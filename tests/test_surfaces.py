@@ -12,7 +12,7 @@ from synth.guide import make_guide
 from synth.surfaces import Profile, Rectangle, Revolved, Scan, Surface, TriangleMesh
 from synth.synthesis import solve, verify, what_counts
 from synth.synthesis.check import between_samples, counted
-from synth.synthesis.check.between import largest_misses
+from synth.synthesis.check.cell_bounds import largest_misses
 from synth.synthesis.solution.message import not_of_revolution
 from synth.synthesis.starts.refined import Trimmed
 from synth.task import parse_task, sampled

@@ -23,6 +23,7 @@ class Cells:
         radii: No point of the piece is farther than this from its point on a way along the surface, shape
             (n,), m; infinite where no surface is known between the points.
         curvatures: No normal curvature of the surface is larger in each, shape (n,), 1/m.
+        corners: Corners of each, whose convex hull it is, shape (n, k, 3), m; None where they are not flat.
     """
 
     points: FloatArray
@@ -30,10 +31,12 @@ class Cells:
     areas: FloatArray
     radii: FloatArray
     curvatures: FloatArray
+    corners: FloatArray | None = None
 
     def __post_init__(self) -> None:
         for name in ("points", "normals", "areas", "radii", "curvatures"):
             object.__setattr__(self, name, frozen(getattr(self, name)))
+        object.__setattr__(self, "corners", None if self.corners is None else frozen(self.corners))
 
     def __len__(self) -> int:
         return len(self.areas)
@@ -46,9 +49,12 @@ class Cells:
     def take(self, chosen: NDArray[np.bool_] | NDArray[np.intp]) -> Cells:
         """Return some of the cells."""
         columns = (self.points, self.normals, self.areas, self.radii, self.curvatures)
-        return Cells(*(column[chosen] for column in columns))
+        points, normals, areas, radii, curvatures = (column[chosen] for column in columns)
+        corners = None if self.corners is None else self.corners[chosen]
+        return Cells(points, normals, areas, radii, curvatures, corners)
 
     def placed(self, position: FloatArray, rotation: FloatArray) -> Cells:
         """Return the cells of the surface moved to a position, shape (3,), and turned, (3, 3)."""
         points, normals = self.points @ rotation.T + position, self.normals @ rotation.T
-        return Cells(points, normals, self.areas, self.radii, self.curvatures)
+        corners = None if self.corners is None else self.corners @ rotation.T + position
+        return Cells(points, normals, self.areas, self.radii, self.curvatures, corners)

@@ -59,17 +59,18 @@ class TriangleMesh:
         """Return about so many cells, no fewer than triangles: each triangle is divided into equal ones."""
         parts = self._parts(count)
         normals = self._crossed(self.corners) / (2.0 * self.face_areas[:, None])
-        points, owners = [], []
+        pieces, owners = [], []
         for number in np.unique(parts).tolist():
             chosen = np.flatnonzero(parts == number)
-            shares = _middles(number)
-            points.append(np.einsum("sk,mkx->msx", shares, self.corners[chosen]).reshape(-1, 3))
+            shares = _shares(number)
+            pieces.append(np.einsum("sck,mkx->mscx", shares, self.corners[chosen]).reshape(-1, 3, 3))
             owners.append(np.repeat(chosen, len(shares)))
-        owner = np.concatenate(owners)
+        owner, corners = np.concatenate(owners), np.concatenate(pieces)
         from_middle = self.corners - self.corners.mean(axis=1, keepdims=True)
         radii = np.linalg.norm(from_middle, axis=2).max(axis=1) / parts
         areas = (self.face_areas / parts**2)[owner]
-        return Cells(np.concatenate(points), normals[owner], areas, radii[owner], np.zeros(len(owner)))
+        flat = np.zeros(len(owner))
+        return Cells(corners.mean(axis=1), normals[owner], areas, radii[owner], flat, corners)
 
     def _parts(self, count: int) -> NDArray[np.intp]:
         """Return into how many parts to divide the sides of each triangle, shape (m,)."""
@@ -139,10 +140,12 @@ class Scan:
         return Cells(self.points, np.full((n, 3), np.nan), areas, np.full(n, math.inf), np.zeros(n))
 
 
-def _middles(parts: int) -> NDArray[np.float64]:
-    """Return the barycentric middles of the equal triangles that a triangle is divided into, (parts^2, 3)."""
+def _shares(parts: int) -> NDArray[np.float64]:
+    """Return the barycentric corners of the equal triangles that one is divided into, (parts^2, 3, 3)."""
     i, j = (each.ravel() for each in np.meshgrid(np.arange(parts), np.arange(parts), indexing="ij"))
     upright, turned = i + j < parts, i + j < parts - 1
-    a = np.concatenate([i[upright] + 1.0 / 3.0, i[turned] + 2.0 / 3.0]) / parts
-    b = np.concatenate([j[upright] + 1.0 / 3.0, j[turned] + 2.0 / 3.0]) / parts
-    return np.column_stack([1.0 - a - b, a, b])
+    a, b = (
+        np.concatenate([at[upright, None] + own, at[turned, None] + 1 - own]) / parts
+        for at, own in ((i, np.array([0, 1, 0])), (j, np.array([0, 0, 1])))
+    )
+    return np.stack([1.0 - a - b, a, b], axis=-1)

@@ -201,10 +201,13 @@ class Rectangle:
         )
         grid = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
         n = len(grid)
+        points = np.column_stack([grid, np.zeros(n)])
+        towards = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
         return Cells(
-            np.column_stack([grid, np.zeros(n)]),
+            points,
             np.tile([0.0, 0.0, 1.0], (n, 1)),
             np.full(n, float(np.prod(steps))),
             np.full(n, 0.5 * float(np.hypot(*steps))),
             np.zeros(n),
+            points[:, None] + 0.5 * np.append(steps, 0.0) * towards,
         )

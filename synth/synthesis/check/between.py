@@ -1,16 +1,4 @@
-"""What a shape covers of a surface between its samples: a bound, not another sample.
-
-Of a cell with the point c the arm reaches P at joint angles q, and misses c by e = c - P. Any other point x
-of the cell is x = c + t + w, with t in the surface's tangent plane at c, |t| <= r, and w along its normal,
-|w| <= k r^2 / 2, for a way of length r on a surface whose normal curvature is k at most. Joints that follow t
-as far as it lies in the tangent plane of the workspace move P by that part of t and by a rest which second
-derivatives of P5 bound, |P''| <= rho and R. So x is missed by at most
-
-    |e| + r sin(phi) + k r^2 / 2 + (rho a^2 + 2 R a b + R b^2) r^2 / 2,
-
-phi the angle between the two planes, a and b the largest turns of the joints for a unit of t, rho the largest
-distance from axis 1 on the way; if the joints may turn so far. In any case it is missed by at most |e| + r.
-"""
+"""What a shape covers of a surface between its samples: a bound, not another sample."""
 
 from __future__ import annotations
 
@@ -20,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import frozen
+from synth.synthesis.check.cell_bounds import largest_misses
 from synth.synthesis.check.covering import Between
 from synth.synthesis.check.following import followed
 from synth.synthesis.check.verification import verify_targets
@@ -192,34 +181,3 @@ def _outmost(cells: Cells, chosen: NDArray[np.bool_]) -> FloatArray:
     away -= np.einsum("ni,ni->n", away, some.normals)[:, None] * some.normals
     away /= np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-12)
     return np.asarray(some.points + some.radii[:, None] * away)
-
-
-def largest_misses(arm: Arm, joints: FloatArray, misses: FloatArray, cells: Cells) -> FloatArray:
-    """Return a bound of what is missed of each cell, shape (n,), m; see above.
-
-    Args:
-        arm: The robot in a shape.
-        joints: Joint angles at the cells' points, shape (n, 2), rad.
-        misses: What P5 is off these points there, shape (n,), m.
-        cells: The cells.
-    """
-    kinematics, limits, r = arm.kinematics, arm.robot.joint_limits, cells.radii
-    reached = kinematics.forward(joints[:, 0], joints[:, 1])
-    first, second = kinematics.velocities(joints, reached)
-    normal = np.cross(first, second)
-    length = np.linalg.norm(normal, axis=1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        a, b = (np.linalg.norm(v, axis=1) / length for v in (second, first))
-        cosine = np.abs(np.einsum("ni,ni->n", normal / length[:, None], cells.normals @ arm.base.rotation))
-        sine = np.sqrt(np.maximum(1.0 - cosine**2, 0.0))
-        radius = float(kinematics.radius)
-        rho = np.hypot(reached[:, 0], reached[:, 1]) + r + radius * b * r
-        turning = 0.5 * (rho * a**2 + 2.0 * radius * a * b + radius * b**2) * r**2
-        bound = misses + r * sine + 0.5 * cells.curvatures * r**2 + turning
-        spare = [
-            np.minimum(angle - limit.lower, limit.upper - angle)
-            for angle, limit in zip(joints.T, (limits.base, limits.second), strict=True)
-        ]
-        follows = (a * r <= spare[0]) & (b * r <= spare[1])
-    usable = follows & np.isfinite(bound)
-    return np.where(usable, np.minimum(np.where(usable, bound, 0.0), misses + r), misses + r)
