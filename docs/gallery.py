@@ -30,7 +30,7 @@ from oracle import OracleArm  # noqa: E402 - after the path
 ORDER = (
     "two-crates", "one-target", "three-targets", "four-targets", "twelve-targets", "moved-base", "own-robot",
     "asked-scara",
-    "plane", "sphere", "puma-sphere", "free-rigid-link", "published-shape", "through-the-window",
+    "plane", "sphere", "puma-sphere", "free-rigid-link", "three-rigid-links", "published-shape", "through-the-window",
     "below-the-floor", "out-of-reach", "three-on-the-axis",
 )  # fmt: skip
 QUANTITIES = {

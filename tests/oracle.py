@@ -73,8 +73,18 @@ class OracleArm(OracleKinematics):
         return 0.5 * self.robot.link.diameter
 
     @property
+    def rigid_link(self):
+        """The rigid link that may be mounted: of a catalogue the nearest one."""
+        if self.robot.rigid_links is None:
+            return self.robot.rigid_link
+        return min(
+            self.robot.rigid_links.links,
+            key=lambda each: abs(each.d35.lower - self.d35) + abs(each.d45.lower - self.d45),
+        )
+
+    @property
     def rod_radius(self):
-        return 0.5 * self.robot.rigid_link.diameter
+        return 0.5 * self.rigid_link.diameter
 
     def samples(self, first=0.0, last=None, spacing=SPACING):
         """Return lengths along the link, no farther apart than the spacing, both ends included."""
@@ -85,7 +95,7 @@ class OracleArm(OracleKinematics):
 
     def breaches_of_shape(self, floor=None, spacing=SPACING):
         """Return the limits that the shape breaks whatever the joints do."""
-        link, rigid = self.robot.link, self.robot.rigid_link
+        link, rigid = self.robot.link, self.rigid_link
         breaches = [
             Breach(name, max(interval.lower - value, value - interval.upper))
             for name, interval, value in (

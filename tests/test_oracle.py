@@ -7,7 +7,17 @@ import pytest
 from oracle import OracleArm, longest_rod
 from planted import ROBOT, planted_arm
 
-from synth.robot import Arm, ArmBody, BasePose, Interval, LinkShape, clear_of_tube, tube_clear_of_itself
+from synth.robot import (
+    Arm,
+    ArmBody,
+    BasePose,
+    Interval,
+    LinkShape,
+    RigidLink,
+    RigidLinkChoices,
+    clear_of_tube,
+    tube_clear_of_itself,
+)
 from synth.synthesis.bound.impossibility import longest_rigid_link
 
 CLOSE = 3e-5  # what the package's bounds give away, m
@@ -70,6 +80,19 @@ def test_a_planted_arm_breaks_nothing_and_each_limit_it_is_taken_beyond():
     lowest = OracleArm.of(arm).lowest()
     sunk = OracleArm.of(arm).breaches_of_shape(lowest + 1e-3)
     assert "floor: link" in {breach.limit for breach in sunk}
+
+
+def test_a_rigid_link_that_is_none_of_a_catalogue_is_seen():
+    links = [RigidLink(0.300, 0.305, 0.01), RigidLink(0.455, 0.460, 0.02)]
+    robot = replace(ROBOT, rigid_links=RigidLinkChoices(("short", "long"), links))
+    shape = planted_arm(np.random.default_rng(7)).shape
+    for lengths, diameter in ((links[0], 0.01), (links[1], 0.02)):
+        oracle = OracleArm.of(Arm(robot, shape, lengths.d35.lower, lengths.d45.lower))
+        assert not {"d35", "d45"} & {breach.limit for breach in oracle.breaches_of_shape()}
+        assert oracle.rod_radius == 0.5 * diameter
+    oracle = OracleArm(robot, oracle.curvatures, oracle.lengths, 0.400, 0.460, np.zeros(3), 0.0)
+    (breach,) = (each for each in oracle.breaches_of_shape() if each.limit == "d35")
+    assert breach.amount == pytest.approx(0.055)
 
 
 def test_joint_angles_beyond_a_limit_a_floor_and_a_solid_are_seen():
