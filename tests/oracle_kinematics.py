@@ -240,7 +240,11 @@ class OracleKinematics:
 
 def longest_rod(robot):
     """Return the largest distance from the link's end to P5, m, by samples of the ranges of d35 and d45."""
-    rigid = robot.rigid_link
+    choices = [robot.rigid_link] if robot.rigid_links is None else robot.rigid_links.links
+    return max(_longest(robot, rigid) for rigid in choices)
+
+
+def _longest(robot, rigid):
     d35, d45 = np.meshgrid(*(np.linspace(i.lower, i.upper, 41) for i in (rigid.d35, rigid.d45)))
     a = (d35**2 - d45**2 + robot.d34**2) / (2.0 * robot.d34)
     squared = d35**2 - a**2

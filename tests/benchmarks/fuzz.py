@@ -1,15 +1,16 @@
 """Random tasks over the whole input space, each answer judged by a second implementation, tests/oracle.py.
 
     python tests/benchmarks/fuzz.py [--tasks 300] [--first 0] [--workers 2] [--limit 300] [--save DIR]
-                                    [--answers DIR] [--prove S]
+                                    [--answers DIR] [--prove S] [--family points]
 
 Other robots, free rigid links, joint ranges, places of the base, obstacles, floors, topologies, objectives,
-1 to 30 targets, tolerances of 0.01 to 20 mm. Planted tasks can be done, impossible ones cannot by
-construction, of wild ones nobody knows. Each is solved in a process of its own, which is ended when it takes
-far too long; what is at fault is printed with its task as YAML, or put into files by --save. One task again:
---numbers N. With --answers what was solved is kept, and a second run only judges it anew; --prove looks for
-a lower bound of each task, too, and holds it against every shape that is known. What cannot be drawn or
-judged is a fault of its own kind ("generator", "judge").
+1 to 30 targets, tolerances of 0.01 to 20 mm; in other families catalogues of rigid links, meshes, scans and
+paths. Planted tasks can be done, impossible ones cannot by construction, of wild ones nobody knows. Each is
+solved in a process of its own, which is ended when it takes far too long; what is at fault is printed with
+its task as YAML, or put into files by --save. One task again: --numbers N. With --answers what was solved is
+kept, and a second run only judges it anew; --prove looks for a lower bound of each task, too, and holds it
+against every shape that is known. What cannot be drawn or judged is a fault of its own kind ("generator",
+"judge").
 """
 
 from __future__ import annotations
@@ -27,39 +28,43 @@ from collections import Counter
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from ruamel.yaml import YAML
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from fuzz_covered import judge_sampled
 from fuzz_faults import Fault
 from fuzz_judge import judge
-from fuzz_tasks import FuzzTask, fuzz_task
+from fuzz_sampled import FAMILIES, drawn
 
 from synth.export import solution_to_json
 from synth.guide import solution_text
 from synth.synthesis import solve
-from synth.task import parse_task
+
+if TYPE_CHECKING:
+    from fuzz_drawn import FuzzTask
 
 _DRAWING = 600.0  # s: more than drawing and judging a task take
 
 
-def answered(number: int, seed: int, kept: Path | None, proof: float) -> dict:
+def answered(number: int, family: str, seed: int, kept: Path | None, proof: float) -> dict:
     """Draw, solve and judge one task; return all that is counted, as plain values.
 
     What cannot be drawn or judged is a fault of these files, of a kind of its own, and no answer's.
     """
     outcome = _nothing_known(number)
     try:
-        fuzz = fuzz_task(number)
+        fuzz = drawn(number, family)
     except Exception:  # noqa: BLE001 - the generator's own fault, told as such
         return outcome | {"status": "not drawn", "faults": [_raised("generator")]}
     outcome |= {"kind": fuzz.kind, "why": fuzz.why, "tags": fuzz.tags}
-    outcome |= {"targets": len(fuzz.content["targets"]), "yaml": as_yaml(fuzz)}
+    outcome |= {"targets": len(fuzz.content.get("targets", ())), "yaml": as_yaml(fuzz)}
     began, spent = time.perf_counter(), time.process_time()
     try:
-        answer = _answer_of(fuzz, seed, kept)
+        answer = _answer_of(fuzz, seed, kept and kept / f"answer-{family}-{number}-{seed}.json")
     except Exception:  # noqa: BLE001 - whatever is raised is what is looked for
         took = {"time": time.perf_counter() - began, "processor": time.process_time() - spent}
         return outcome | took | {"status": "exception", "faults": [_raised("exception")]}
@@ -67,7 +72,8 @@ def answered(number: int, seed: int, kept: Path | None, proof: float) -> dict:
     outcome |= {key: answer[key] for key in ("time", "processor")}
     outcome |= {"status": content["status"], "message": content["message"]}
     try:
-        faults = judge(fuzz, parse_task(fuzz.content), content, answer["text"], proof)
+        known = (fuzz, fuzz.read(), content, answer["text"])
+        faults = judge_sampled(*known) if fuzz.fine else judge(*known, proof)
     except Exception:  # noqa: BLE001 - the judge's own fault, told as such
         faults = [_raised("judge")]
     return outcome | {"faults": [Fault("warning", words) for words in answer["warnings"]] + faults}
@@ -86,21 +92,20 @@ def _raised(kind: str) -> Fault:
     return Fault(kind, f"{told[-1]} ({place})")
 
 
-def _answer_of(fuzz: FuzzTask, seed: int, kept: Path | None) -> dict:
+def _answer_of(fuzz: FuzzTask, seed: int, file: Path | None) -> dict:
     """Return the JSON and the text of a task's solution, what was warned of, and the time, s.
 
     Args:
         fuzz: The task.
         seed: Of the search.
-        kept: Where answers are kept; one that is there already is not sought again.
+        file: Where the answer is kept; one that is there already is not sought again.
     """
-    file = None if kept is None else kept / f"answer-{fuzz.number}-{seed}.json"
     if file is not None and file.exists():
         return json.loads(file.read_text())
     began, spent = time.perf_counter(), time.process_time()
     with warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always")
-        solution = solve(parse_task(fuzz.content), seed=seed)
+        solution = solve(fuzz.read(), seed=seed)
         took = {"time": time.perf_counter() - began, "processor": time.process_time() - spent}
         content, text = solution_to_json(solution), solution_text(solution)
     counts = Counter(
@@ -124,10 +129,10 @@ def _send(pipe, *arguments) -> None:
     pipe.send(answered(*arguments))
 
 
-def outcome_of(number: int, seed: int, limit: float, kept: Path | None, proof: float) -> dict:
+def outcome_of(number: int, family: str, seed: int, limit: float, kept: Path | None, proof: float) -> dict:
     """Answer one task in a process of its own, and end it if it takes too long or dies."""
     mine, its = multiprocessing.Pipe(duplex=False)
-    arguments = (its, number, seed, kept, proof)
+    arguments = (its, number, family, seed, kept, proof)
     process = multiprocessing.get_context("fork").Process(target=_send, args=arguments, daemon=True)
     process.start()
     its.close()
@@ -186,6 +191,7 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--numbers", type=int, nargs="*", help="these tasks only")
     parser.add_argument("--seed", type=int, default=0, help="seed of the search")
+    parser.add_argument("--family", choices=FAMILIES, default="points")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--limit", type=float, default=300.0, metavar="S")
     parser.add_argument("--save", type=Path, metavar="DIR", help="for the tasks at fault, and outcomes.json")
@@ -203,6 +209,7 @@ def main() -> None:
     with ThreadPoolExecutor(arguments.workers) as executor:
         answer = partial(
             outcome_of,
+            family=arguments.family,
             seed=arguments.seed,
             limit=arguments.limit,
             kept=arguments.answers,

@@ -50,6 +50,16 @@ def _cut(told, d35, d45):
         yield Fault("untrue", "to be cut, but the rigid link is fixed")
 
 
+def _take(told, name, d35, d45):
+    """Check the choice from a catalogue: one of its rigid links, by its name and its lengths."""
+    for number, true in ((d35, told.arm.d35), (d45, told.arm.d45)):
+        yield from wrongly_told(f"of {name}", number, 1e3 * true, "near")
+    known = told.task.robot.rigid_links
+    names = dict(zip(known.names, known.links, strict=True)) if known else {}
+    if name not in names or abs(names[name].d35.lower - told.arm.d35) > 1e-6:
+        yield Fault("untrue", f"{name} is not the rigid link of the shape")
+
+
 def _hold(told, first, second, not_clear):
     """Check the posture to hold: angles that the joints can take as they are printed, clear of everything."""
     hold, limits = told.content["guide"]["hold"], told.task.robot.joint_limits
@@ -178,13 +188,15 @@ _BENT = (
 )
 _STEP = r"\d+\. "
 _XYZ = rf"\({_NUMBER}, {_NUMBER}, {_NUMBER}\)"
-_WITHIN = rf"{_STEP}Hold axis 2 within {_NUMBER} mm \((\w+)\)"
+_WITHIN = rf"{_STEP}Hold axis 2 within {_NUMBER} mm \(([\w ]+)\)"
 _TAPE = r"By tape: (.*) mm\."
 GUIDE_LINES: dict[str, Callable[..., Iterator[Fault]]] = {
     rf"No hand holds this at the first try: {_HAND} less than 2 % of tries, {_THEN}{_SO}": _little_chance,
     rf"At the first try {_HAND} about (\d+) % of tries, {_THEN}{_SO}": _chance,
     rf"{_STEP}The base stands with P1 at {_XYZ} mm, turned by {_NUMBER} deg\.": _base,
     rf"{_STEP}Cut the rigid link to d35 = {_NUMBER} mm and d45 = {_NUMBER} mm, from P3 and P4 to P5\.": _cut,
+    rf"{_STEP}Of the rigid links take (.+): d35 = {_NUMBER} mm and d45 = {_NUMBER} mm, "
+    r"from P3 and P4 to P5\.": _take,
     rf"{_STEP}Set joint 1 to {_NUMBER} deg and hold it there, joint 2 at {_NUMBER} deg\."
     r"( No posture was found in which the bent arm is clear of everything: make room for it\.)?": _hold,
     rf"{_STEP}Soften the link and shape it: {_ANY_LINK}{_BENT}": _soften,
@@ -192,7 +204,7 @@ GUIDE_LINES: dict[str, Callable[..., Iterator[Fault]]] = {
     rf"{_STEP}Axis 2 runs through END, P3 and P4: from P3 to P4 {_NUMBER} deg (above|below) horizontal, "
     rf"heading {_NUMBER} deg \(from x towards y\)\. {_TAPE}": _axis,
     rf"{_STEP}Axis 2 runs through END, P3 and P4 and is vertical, P4 (above|below) P3\. {_TAPE}": _upright,
-    rf"{_WITHIN} and {_NUMBER} deg \((\w+)\); within half of each if both "
+    rf"{_WITHIN} and {_NUMBER} deg \(([\w ]+)\); within half of each if both "
     rf"are off\. P3 off against P4 by {_NUMBER} mm across the axis is such a tilt\.": _precise,
     rf"{_WITHIN}; its direction matters little: a tilt of {_NUMBER} deg "
     r"alone loses no target\.": _precise_in_place,

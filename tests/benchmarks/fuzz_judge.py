@@ -13,7 +13,7 @@ from fuzz_sentences import faults_of_text
 from oracle import SLACK, OracleArm, longest_rod
 
 if TYPE_CHECKING:
-    from fuzz_tasks import FuzzTask
+    from fuzz_drawn import FuzzTask
 
     from synth.task import Task
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from fuzz_faults import Fault, wrongly_told
-from fuzz_tasks import FuzzTask, random_arm
+from fuzz_tasks import random_arm
 from oracle import OracleArm, distance_from_solid, longest_rod
 from scipy.optimize import least_squares
 
@@ -16,6 +16,8 @@ from synth.watch import Watch
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from fuzz_drawn import FuzzTask
 
     from synth.task import Task
 

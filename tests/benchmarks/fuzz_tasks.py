@@ -7,64 +7,24 @@ angles, clear of everything: so it can be done), impossible by construction, or 
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import least_squares
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from fuzz_drawn import FuzzTask, is_meant, parsed
 from fuzz_robots import chosen, log_uniform, random_content, random_obstacle, rounded
 from oracle import OracleArm, distance_from_solid, longest_rod
 
-from synth.errors import InputError
-from synth.task import Task, parse_task
+if TYPE_CHECKING:
+    from synth.task import Task
 
 KINDS = {"planted": 0.55, "impossible": 0.15, "wild": 0.3}
 ROOM = 2e-3  # m: the least clearance of a planted arm
 _TRIES, _TRIES_BENT = 400, 25  # shapes drawn before the hardware is drawn anew
-_MEANT = 500.0  # mm from P1, a place that nobody takes for a mistaken unit, whatever robot is drawn here
-
-
-@dataclass
-class FuzzTask:
-    """A task file's content, and what is known of its answer.
-
-    Attributes:
-        number: The seed that draws it again.
-        kind: One of KINDS.
-        content: The task file, lengths in its own unit.
-        planted: The planted arm, or None.
-        joints: Its joint angles at the targets, rad.
-        why: What makes the task impossible, or what is special about it.
-    """
-
-    number: int
-    kind: str
-    content: dict[str, Any]
-    planted: OracleArm | None = None
-    joints: np.ndarray | None = None
-    why: str = ""
-    tags: list[str] = field(default_factory=list)
-
-
-def parsed(content) -> Task:
-    """Return the values of a task file's content, with a target of no consequence where it has none."""
-    p1 = np.array(content.get("base", {"position": [0.0, 0.0, 0.0]})["position"])
-    return parse_task({"targets": [{"position": p1 + [_MEANT, 0.0, 0.0]}]} | content)
-
-
-def is_meant(content) -> bool:
-    """Whether a content is not refused because its sizes look like those of a mistaken unit of length."""
-    try:
-        parsed(content)
-    except InputError as error:
-        if "length_unit" not in str(error):
-            raise
-        return False
-    return True
 
 
 def random_arm(task: Task, rng) -> OracleArm:
