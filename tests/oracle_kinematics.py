@@ -185,11 +185,7 @@ class OracleKinematics:
     @cached_property
     def _leaning(self):
         """The axes of the base frame in the task frame, as columns [3, 3]."""
-        z, y, x = (
-            np.array([0.0, 0.0, self.yaw]),
-            np.array([0.0, self.pitch, 0.0]),
-            np.array([self.roll, 0.0, 0.0]),
-        )
+        z, y, x = np.diag([self.yaw, self.pitch, self.roll])[:, ::-1]
         return rotation(z) @ rotation(y) @ rotation(x)
 
     def reached(self, joints):

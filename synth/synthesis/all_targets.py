@@ -68,6 +68,33 @@ class WholeTask:
         )
 
 
+def looked_through(task: Task, part: Task, known: Sequence[Design], seed: int, watch: Watch) -> WholeTask:
+    """Return what is known for a part of a task as what it is for all that is asked.
+
+    Args:
+        task: The task with all its targets.
+        part: The task of few targets that the designs were found for; the task itself if it has no more.
+        known: These designs.
+        seed: Seed of what is searched for beside them.
+        watch: When it is up, as little more is looked at as may be.
+    """
+    best = best_of(part, known, watch.is_up)
+    if part is task:
+        return proven_whole(part, WholeTask(task, best), seed, watch)
+    whole = for_all_targets(task, _and_others(best, known), seed, watch)
+    led = replace(led_to_missed(part, whole, seed, watch), blocked=whole.blocked)
+    return proven_whole(part, led, seed, watch)
+
+
+def _and_others(best: tuple[Design, ...], known: Sequence[Design]) -> tuple[Design, ...]:
+    """Return designs, and behind them those that are like one of them for a part of the targets.
+
+    For all targets they may not be: one has its dead zone where no target is, or nearly so.
+    """
+    taken = {id(design.arm) for design in best}
+    return (*best, *(design for design in known if id(design.arm) not in taken))
+
+
 def for_all_targets(task: Task, designs: Sequence[Design], seed: int, watch: Watch) -> WholeTask:
     """Return designs improved for all targets, and verified with them or with as many as there is time for.
 

@@ -48,14 +48,13 @@ def chosen(task: Task, seed: int, watch: Watch, alternatives: int) -> Run:
     ]
     if isinstance(task.places, BaseRange):
         runs = _in_range(with_each, task.places, seed, watch)
+        for run in runs:
+            run.look_beside(alternatives)
+        best = best_run(runs)
     else:
         poses = [task.base] if task.places is None else task.places.poses
         runs = [run_at(each, pose, seed, watch) for each in with_each for pose in poses]
-        _search(runs, watch)
-    for run in runs:
-        with run.kept(), watch.keeping_back(run.kept_back):
-            run.search.look_beside(alternatives)
-    best = best_run(runs)
+        best = _searched(runs, alternatives, watch)
     best.places = task.places
     best.others = tuple(run for run in runs if run is not best)
     best.elsewhere |= len(runs) < len(with_each)
@@ -73,23 +72,28 @@ def _in_range(tasks: Sequence[Task], places: BaseRange, seed: int, watch: Watch)
     return runs
 
 
-def _search(runs: Sequence[Run], watch: Watch) -> None:
-    """Search in each run, but in those that are known to be impossible only if all are."""
+def _searched(runs: Sequence[Run], alternatives: int, watch: Watch) -> Run:
+    """Search in each run, but in those that are known to be impossible only if all are; return the best."""
     searched = [run for run in runs if not run.impossible] or runs
     for most in (_QUICK, None):
-        for run in searched:
+        unmet = [run for run in searched if not run.search.polishing.found]
+        for run in unmet:
             with run.kept(), watch.keeping_back(run.kept_back):
                 run.search.run(most)
             if watch.is_up():
-                return
-        if any(run.search.polishing.found for run in searched):
-            return
+                break
+        for run in unmet:
+            run.look_beside(alternatives)
+        best = best_run(runs)
+        if best.does_all or watch.is_up():
+            break
+    return best
 
 
 def _told(best: Run, watch: Watch) -> list[str]:
     """Return sentences on what was found with what was not chosen, and of a miss with what it was chosen."""
     told = []
-    if best.others and not best.search.polishing.found and best.search.polishing.designs:
+    if best.others and not best.does_all and best.search.polishing.designs:
         told.append(f"what is shown is the shape {_where(best)}")
     order = sorted(best.others, key=lambda run: (not run.search.polishing.found, least_objective(run)))
     some = {id(run) for run in (order if len(order) <= _TOLD + 1 else order[:_TOLD])}
@@ -100,13 +104,18 @@ def _told(best: Run, watch: Watch) -> list[str]:
 
 def _of_another(run: Run, watch: Watch) -> str:
     where, designs = _where(run), run.search.polishing.designs
+    looked_at = f"of the {len(run.part.targets)} targets that were looked at"
     if run.search.polishing.found:
-        return f"{where} every target is reached, too, by a shape that is less wanted"
+        if run.was_looked_through and not run.does_all:
+            return f"{where} each {looked_at} first is reached, but not all that is asked"
+        what = "every target" if run.sees_all or run.was_looked_through else f"each {looked_at}"
+        return f"{where} {what} is reached, too, by a shape that is less wanted"
     if run.impossible:
         return f"{where} no shape can do it: {run.impossible[0]}"
     if designs:
         worst = min(float(np.max(design.verification.misses)) for design in designs)
-        return f"{where} the best shape found misses by {rounded_up(worst, digits=2)} mm"
+        told = f"{where} the best shape found misses by {rounded_up(worst, digits=2)} mm"
+        return told if run.sees_all else f"{told} at the worst {looked_at}"
     if watch.interrupted and not run.search.starts:
         return f"{where} nothing was looked for: the time was up"
     return f"{where} no shape was found that the hardware can take"

@@ -33,7 +33,7 @@ _ROUND = ((1e-3, math.radians(0.1)), (1e-4, math.radians(0.01)))
 
 
 def in_range(task: Task, places: BaseRange, seed: int, watch: Watch) -> Run:
-    """Refine shapes and places together, and stay at the first place where a shape reaches every target.
+    """Refine shapes and places together, and stay at the first place where a shape does all.
 
     Args:
         task: The task, whose base is free in ranges.
@@ -51,13 +51,13 @@ def in_range(task: Task, places: BaseRange, seed: int, watch: Watch) -> Run:
         if start.cost > float(part.tolerances.max()) ** 2 and len(runs) == _TRIED_THAT_MISS:
             break
         runs.append(_started(task, part, start, seed, watch))
-        if runs[-1].search.polishing.found or watch.is_up():
+        if runs[-1].does_all or watch.is_up():
             break
     if not runs:
         return run_at(task, task.base, seed, watch)
     best = best_run(runs)
     best.elsewhere = not impossible  # then it is so where the base stands now, too
-    if best.search.polishing.found:
+    if best.does_all:
         best = _at_round_numbers(task, places, best, seed, watch)
     return best
 
@@ -87,7 +87,7 @@ def _at_round_numbers(task: Task, places: BaseRange, run: Run, seed: int, watch:
         arm = replace(design.arm, base=base)
         joints, _ = arm.closest_joints(run.part.table.positions)
         there = _started(task, run.part, Start(arm, joints), seed, watch)
-        if there.search.polishing.found:
+        if there.does_all:
             return there
         if watch.is_up():
             break
@@ -110,11 +110,12 @@ def _rounded(places: BaseRange, base: BasePose, length: float, angle: float) -> 
 
 
 def best_run(runs: Sequence[Run]) -> Run:
-    """Return the run that reaches every target with the shape that is wanted most, or misses least."""
+    """Return the run that does all with the shape that is wanted most, or misses least."""
     found = [run for run in runs if run.search.polishing.found]
     if found:
         best = [best_of(run.part, run.search.polishing.designs)[0] for run in found]
-        return found[int(preferred_designs(best)[0])]
+        order: list[Run] = [found[index] for index in preferred_designs(best).tolist()]
+        return next((run for run in order if run.does_all), order[0])
     with_shape = [run for run in runs if run.search.polishing.designs]
     return min(with_shape or runs, key=least_objective)
 

@@ -23,10 +23,12 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.synthesis.bound import LinkEnd
+    from synth.synthesis.run import Run
     from synth.synthesis.wanted import Design
     from synth.task import Task
     from synth.watch import Watch
 
+_PROOF_TIME = 60.0  # s
 _GAP = 1e-4  # m: the proof ends when the bound is as near as this to the best shape
 _STARTS = 16  # for the least worst miss
 _POLISHED = 6  # of the designs of the search, for the least worst miss
@@ -132,3 +134,47 @@ class Certifier:
             for near in (False, True):
                 self._polish(arms[index], joints[index], near=near)
         return self._best()
+
+
+def prove_run(run: Run) -> None:
+    """Bound how little any shape can miss, unless the search was stopped already.
+
+    Args:
+        run: The run, whose search is over; the bound is of what was not chosen, too.
+    """
+    if run.watch.interrupted:
+        run.notes.append("nothing was proven: the search was stopped before")
+        return
+    if run.task.is_partial:
+        run.notes.append("nothing was proven: which part of a surface is left is not bounded")
+        return
+    if not run.task.robot.rigid_link.is_fixed:
+        run.notes.append("nothing was proven: a rigid link in ranges is not bounded, one of given lengths is")
+        return
+    run.complete = True
+    watch, stopped = run.watch.within(_PROOF_TIME), False
+    with run.watch.on("proving"):
+        own = _certifier(run, watch)
+        known = own.search()
+        # What is not to be chosen is soon excluded, mostly; the time that is left is for what was.
+        for number, other in enumerate(run.others):
+            share = watch.within(watch.remaining / (len(run.others) + 1 - number))
+            other.bound = _certifier(other, share).bound(known)
+            known = known if other.bound is None else other.bound.best_found
+            stopped |= share.interrupted
+        run.bound = own.bound(known)
+    if stopped or watch.interrupted:
+        run.notes.append("the proof was stopped early: more time may prove more")
+    if run.elsewhere and run.bound is not None and run.bound.lower_bound > 0.0:
+        run.notes.append("what is proven holds where the base was found to stand")
+
+
+def _certifier(run: Run, watch: Watch) -> Certifier:
+    return Certifier(
+        run.part,
+        float(run.task.tolerances.min()),
+        run.search.polishing.designs,
+        run.search.polishing.keep,
+        watch,
+        run.seed,
+    )

@@ -12,30 +12,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.errors import in_a_line
-from synth.synthesis.all_targets import (
-    WholeTask,
-    for_all_targets,
-    led_to_missed,
-    only_proven,
-    proven_whole,
-    verified_in_time,
-)
+from synth.synthesis.all_targets import WholeTask, looked_through, only_proven, verified_in_time
 from synth.synthesis.bound import Bound, why_impossible
 from synth.synthesis.many_targets import without_partial
 from synth.synthesis.present_shape import changing_little
-from synth.synthesis.proving import Certifier
 from synth.synthesis.search import ALTERNATIVES, Search
 from synth.synthesis.solution import Solution, Status, message, note_on_ways, why_no_better
 from synth.synthesis.wanted import Design, best_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from synth.robot import BasePlaces
     from synth.task import Task
     from synth.watch import Watch
 
-_PROOF_TIME = 60.0  # s
 _PROVEN_IN_TIME = 50_000  # targets: whether each of more is within reach takes a second or longer
 _AS_LONG = 30_000  # targets that are looked at in the time of the search for a part of them
 _LEAST_SEARCH = 0.2  # of all the time, which is left to the search however many there are
@@ -108,6 +99,41 @@ class Run:
         bounds = [run.bound for run in (self, *self.others)]
         return Bound.least_of([each for each in bounds if each is not None]) if all(bounds) else None
 
+    def look_beside(self, alternatives: int) -> None:
+        """Look for other shapes that a person would rather have, where one does what is searched for."""
+        with self.kept(), self.watch.keeping_back(self.kept_back):
+            self.search.look_beside(alternatives)
+            self.__dict__.pop("whole", None)  # what was known of fewer shapes
+
+    @property
+    def sees_all(self) -> bool:
+        """Whether the search knows all that is asked: all targets, and nothing between them."""
+        return self.part is self.task and not (self.task.surfaces or self.task.paths)
+
+    @property
+    def was_looked_through(self) -> bool:
+        """Whether it is known what its shapes do of all that is asked."""
+        return "whole" in self.__dict__
+
+    @property
+    def does_all(self) -> bool:
+        """Whether a shape does all that is asked, and not only the part that is searched with."""
+        found = self.search.polishing.found
+        if found and not self.sees_all:
+            found = False
+            with self.kept():
+                found = any(design.verification.found for design in self.whole.designs[:1])
+        return found
+
+    @cached_property
+    def whole(self) -> WholeTask:
+        """What was found, for all targets; what is searched for later is not in it."""
+        found = self.search.polishing.designs
+        known = [*found, *changing_little(self.part, found, self.seed, self.watch)]
+        whole = looked_through(self.task, self.part, known, self.seed, self.watch)
+        self.search.polishing.blocked.extend(whole.blocked)
+        return whole
+
     @property
     def kept_back(self) -> float:
         """Which share of the time the search leaves for looking at all targets."""
@@ -118,12 +144,7 @@ class Run:
         """Rank what was found and say what it is worth."""
         whole = WholeTask(self.task)
         with self.kept():
-            known = [
-                *self.search.polishing.designs,
-                *changing_little(self.part, self.search.polishing.designs, self.seed, self.watch),
-            ]
-            best = best_of(self.part, known, self.watch.is_up)
-            whole = self._whole(best if self.part is self.task else _and_others(best, known))
+            whole = self.whole
         if self.broke_off is not None and not whole.designs:
             with self.kept():
                 for one in best_of(self.part, self.search.polishing.designs)[:1]:
@@ -133,16 +154,18 @@ class Run:
         whole = replace(whole, designs=designs)
         status, reasons = Status.FAILED, tuple[str, ...]()
         with self.kept():
-            status, reasons = self._verdict(whole)
+            status, reasons = _verdict(self, whole)
         words = status.sentence
+        if self.broke_off is not None:
+            reasons = (f"the search broke off: {in_a_line(self.broke_off)}", *reasons)
         with self.kept():
-            words = message(task, status, designs, (*self._why_broken(), *reasons))
+            words = message(task, status, designs, reasons)
         no_time = note_on_ways(designs, interrupted=self.watch.interrupted)
         return Solution(
             replace(task, places=self.places),
             status,
             words,
-            (*self._why_broken(), *reasons),
+            reasons,
             self.seed,
             designs,
             self.search.starts,
@@ -152,89 +175,6 @@ class Run:
             breakdown="".join(traceback.format_exception(self.broke_off)) if self.broke_off else "",
         )
 
-    def _why_broken(self) -> tuple[str, ...]:
-        return () if self.broke_off is None else (f"the search broke off: {in_a_line(self.broke_off)}",)
-
-    def _whole(self, designs: tuple[Design, ...]) -> WholeTask:
-        """Return designs for a part of the targets as designs for all."""
-        whole = WholeTask(self.task, designs)
-        if self.part is not self.task:
-            whole = for_all_targets(self.task, designs, self.seed, self.watch)
-            self.search.polishing.blocked.extend(whole.blocked)
-            whole = led_to_missed(self.part, whole, self.seed, self.watch)
-        return proven_whole(self.part, whole, self.seed, self.watch)
-
-    def _verdict(self, whole: WholeTask) -> tuple[Status, tuple[str, ...]]:
-        """Return how the search ended, and why it found no more, as far as that is known."""
-        designs = whole.designs
-        if designs and designs[0].verification.found:
-            return Status.FOUND, ()
-        if self.broke_off is not None:
-            return Status.FAILED, ()
-        if all(run.excluded and not run.elsewhere for run in (self, *self.others)):
-            return Status.PROVEN_IMPOSSIBLE, self.excluded
-        if self.search.polishing.breakdowns and not (
-            self.search.polishing.designs or self.search.polishing.blocked
-        ):
-            return Status.FAILED, tuple(self.search.polishing.breakdowns[:1])
-        cut_short = self.watch.interrupted and not self.complete
-        status = Status.LIMIT if cut_short or whole.unseen else Status.BEST_EFFORT
-        asked = replace(self.task, places=self.places)
-        return status, why_no_better(asked, designs, self.search.polishing.blocked)
-
-
-def _and_others(best: tuple[Design, ...], known: Sequence[Design]) -> tuple[Design, ...]:
-    """Return designs, and behind them those that are like one of them for a part of the targets.
-
-    For all targets they may not be: one has its dead zone where no target is, or nearly so.
-    """
-    taken = {id(design.arm) for design in best}
-    return (*best, *(design for design in known if id(design.arm) not in taken))
-
-
-def prove_run(run: Run) -> None:
-    """Bound how little any shape can miss, unless the search was stopped already.
-
-    Args:
-        run: The run, whose search is over; the bound is of what was not chosen, too.
-    """
-    if run.watch.interrupted:
-        run.notes.append("nothing was proven: the search was stopped before")
-        return
-    if run.task.is_partial:
-        run.notes.append("nothing was proven: which part of a surface is left is not bounded")
-        return
-    if not run.task.robot.rigid_link.is_fixed:
-        run.notes.append("nothing was proven: a rigid link in ranges is not bounded, one of given lengths is")
-        return
-    run.complete = True
-    watch, stopped = run.watch.within(_PROOF_TIME), False
-    with run.watch.on("proving"):
-        own = _certifier(run, watch)
-        known = own.search()
-        # What is not to be chosen is soon excluded, mostly; the time that is left is for what was.
-        for number, other in enumerate(run.others):
-            share = watch.within(watch.remaining / (len(run.others) + 1 - number))
-            other.bound = _certifier(other, share).bound(known)
-            known = known if other.bound is None else other.bound.best_found
-            stopped |= share.interrupted
-        run.bound = own.bound(known)
-    if stopped or watch.interrupted:
-        run.notes.append("the proof was stopped early: more time may prove more")
-    if run.elsewhere and run.bound is not None and run.bound.lower_bound > 0.0:
-        run.notes.append("what is proven holds where the base was found to stand")
-
-
-def _certifier(run: Run, watch: Watch) -> Certifier:
-    return Certifier(
-        run.part,
-        float(run.task.tolerances.min()),
-        run.search.polishing.designs,
-        run.search.polishing.keep,
-        watch,
-        run.seed,
-    )
-
 
 def bound_of_all(bound: Bound | None, task: Task, designs: tuple[Design, ...]) -> Bound | None:
     """Return a bound that was proven for a part of the targets, with what was found for all of them."""
@@ -242,3 +182,20 @@ def bound_of_all(bound: Bound | None, task: Task, designs: tuple[Design, ...]) -
         return None
     relative = [float(np.max(design.verification.misses / task.tolerances)) for design in designs]
     return replace(bound, best_found=bound.tightest_tolerance * min(relative, default=math.inf))
+
+
+def _verdict(run: Run, whole: WholeTask) -> tuple[Status, tuple[str, ...]]:
+    """Return how the search ended, and why it found no more, as far as that is known."""
+    designs = whole.designs
+    if designs and designs[0].verification.found:
+        return Status.FOUND, ()
+    if run.broke_off is not None:
+        return Status.FAILED, ()
+    if all(each.excluded and not each.elsewhere for each in (run, *run.others)):
+        return Status.PROVEN_IMPOSSIBLE, run.excluded
+    if run.search.polishing.breakdowns and not (run.search.polishing.designs or run.search.polishing.blocked):
+        return Status.FAILED, tuple(run.search.polishing.breakdowns[:1])
+    cut_short = run.watch.interrupted and not run.complete
+    status = Status.LIMIT if cut_short or whole.unseen else Status.BEST_EFFORT
+    asked = replace(run.task, places=run.places)
+    return status, why_no_better(asked, designs, run.search.polishing.blocked)
