@@ -18,7 +18,7 @@ from synth.robot import BaseChoices, BasePose, BaseRange, Interval, Workspace
 from synth.synthesis import Status, blocking
 from synth.synthesis.shapes import Shapes
 from synth.synthesis.starts import refine, start_points
-from synth.synthesis.starts.screening import shapes_at_places
+from synth.synthesis.starts.random_shapes import shapes_for
 from synth.task import Obstacle, PointTarget, Task
 
 WALL = """
@@ -180,7 +180,7 @@ def test_obstacles_are_kept_clear_of_from_the_place_chosen():
 
 def test_shapes_and_targets_move_with_the_base_as_differences_say():
     task, _ = planted_base(1, leaning=LEANING)
-    shapes = shapes_at_places(task, task.places, 0).take(slice(20))
+    shapes = shapes_for(task, 0).shapes.take(slice(20))
     rows = shapes.motion[:, -6:, -6:]  # shift and turn of the base in its own frame
     point, step = np.array([[0.3, -0.2, 0.5]]), 1e-6
     for number in range(6):

@@ -176,10 +176,10 @@ def _all_ways(told: Told, count):
 
 SUMMARY_LINES: dict[str, Callable[..., Iterator[Fault]]] = {
     _TARGET_LINE: _target,
-    rf"(\w+) to (\w+): joint 1 by {_SIGNED} deg, joint 2 by {_SIGNED} deg"
+    rf"([\w ]+) to ([\w ]+): joint 1 by {_SIGNED} deg, joint 2 by {_SIGNED} deg"
     r"( \(the long way round: the short one is closed by the limits of joint 1\))?"
     r"(, by way of .* deg)?": _way,
-    r"(\w+) to (\w+): no way was found that keeps clear": _no_way,
+    r"([\w ]+) to ([\w ]+): no way was found that keeps clear": _no_way,
     rf"kind of shape: ([\w-]+)(?: to {_NUMBER} (mm|deg))?; (.*)": _kind,
     rf"link {_NUMBER} mm long, smallest bend radius {_NUMBER} mm, {_NUMBER} deg of bend in all": link_faults,
     rf"link {_NUMBER} mm long, as good as straight()()": lambda told, length, *_: link_faults(
