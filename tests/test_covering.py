@@ -1,10 +1,15 @@
 """What of a surface is covered where a part may be left, and outliers lie near."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from planted_surfaces import as_points, as_torus
+from planted_surfaces import as_points, as_task, as_torus
 
-from synth.synthesis import solve
+from synth.robot import BaseRange, Interval
+from synth.surfaces import Scan
+from synth.synthesis import placing, solve
+from synth.watch import Watch
 
 
 def test_few_outliers_near_a_surface_do_not_hold_the_shape():
@@ -23,3 +28,16 @@ def test_the_covered_share_is_told_finer_than_by_the_samples():
     misses = solution.robot.closest_joints(cells.points)[1]
     share = cells.areas[misses <= surface.tolerance].sum() / cells.areas.sum()
     assert solution.best.verification.coverings[0].share == pytest.approx(share, abs=0.005)
+
+
+@pytest.mark.parametrize(("coverage", "quick"), [(0.8, False), (1.0, True)])
+def test_only_for_what_must_be_reached_a_place_is_sought_in_haste(coverage, quick, monkeypatch):
+    """An outlier beyond the reach from all places proves nothing of a scan of which a part may be left."""
+    task, _, _ = as_points(0, 200, coverage=coverage)
+    points = np.concatenate([task.surfaces[0].shape.points, [[3.0, 0.0, 0.0]]])
+    scan = replace(task.surfaces[0], shape=Scan(points))
+    places = BaseRange(Interval(-0.2, 0.2), 0.0, 0.0, 0.0, 0.0, 0.0)
+    asked = []
+    monkeypatch.setattr(placing, "start_points", lambda *_, **said: iter(asked.append(said["quick"]) or ()))
+    placing.in_range(replace(as_task("scan", scan), places=places), places, 0, Watch())
+    assert asked == [quick]

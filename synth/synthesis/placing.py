@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.many_targets import part_of
+from synth.synthesis.many_targets import part_of, without_partial
 from synth.synthesis.run import Run
 from synth.synthesis.starts import Start, start_points
 from synth.synthesis.wanted import best_of, objective, preferred_designs
@@ -95,11 +95,14 @@ def _at_round_numbers(task: Task, places: BaseRange, run: Run, seed: int, watch:
 
 
 def _is_out_of_reach(task: Task, places: BaseRange) -> bool:
-    """Whether some target is farther from wherever P1 may be than the straight arm reaches."""
+    """Whether some target that must be reached is farther from wherever P1 may be than the straight arm."""
+    asked = without_partial(task)
+    if asked is None:
+        return False
     robot, (lower, upper) = task.robot, places.bounds[:, :3]
     reach = robot.d12 + robot.link.length.upper + abs(robot.tip_offset) + robot.rigid_link.d35.upper
-    targets = task.table.positions
-    away = np.linalg.norm(targets - np.clip(targets, lower, upper), axis=1) - task.tolerances
+    targets = asked.table.positions
+    away = np.linalg.norm(targets - np.clip(targets, lower, upper), axis=1) - asked.tolerances
     return bool(away.max() > reach)
 
 
