@@ -43,6 +43,7 @@ _UNJUDGED = (
     r"solving with --(?:why|prove) .*",
     r"more time may find a shape",
 )
+_NARROWED = {"samples": 361, "valleys": 4, "halvings": 32}  # of the oracle's search: to 1e-8 rad
 _WAY_SLACK = 3e-5  # m: by so much a clearance on a way is known to the package
 _SHARE = 0.03  # by which the share of an area may differ from that of the points of one's own
 
@@ -65,7 +66,7 @@ def judge_sampled(fuzz: FuzzTask, task: Task, content, text: str) -> list[Fault]
         faults += _of_surface(fuzz.fine[told["name"]], told, asked, arm, found=found)
     for told, asked in zip(content["paths"] or [], task.paths, strict=found):
         faults += _of_path(fuzz.fine[told["name"]], told, asked, arm, task)
-    return [*faults, *_of_text(Told(part, content, arm), content, text)]
+    return [*faults, *faults_of_sampled_text(Told(part, content, arm), content, text)]
 
 
 def _of_targets(part, content, arm: OracleArm, *, partial: bool) -> Iterator[Fault]:
@@ -77,7 +78,7 @@ def _of_targets(part, content, arm: OracleArm, *, partial: bool) -> Iterator[Fau
     if not arm.is_topology(part.topology.value):
         yield Fault("false found", f"topology {part.topology.value}: off by {arm.off_topology}")
     misses = arm.misses(joints, part.table.positions)
-    least = arm.misses(arm.closest(part.table.positions), part.table.positions)
+    least = arm.misses(arm.closest(part.table.positions, **_NARROWED), part.table.positions)
     for i, target in enumerate(content["targets"]):
         if abs(misses[i] - target["miss"]) > 2.0 * SLACK:
             yield Fault("misstated", f"{target['name']} misses by {misses[i]}, said {target['miss']}")
@@ -92,7 +93,7 @@ def _of_targets(part, content, arm: OracleArm, *, partial: bool) -> Iterator[Fau
 
 def _of_surface(fine, told, asked, arm: OracleArm, *, found: bool) -> Iterator[Fault]:
     """Check what is told of a surface, at points all over it."""
-    misses = arm.misses(arm.closest(fine), fine)
+    misses = arm.misses(arm.closest(fine, **_NARROWED), fine)
     share, between = float(np.mean(misses <= asked.tolerance)), told["between"]
     scan = not asked.samples.are_joined
     if told["share"] > share + (1e-9 if scan else _SHARE):
@@ -129,7 +130,7 @@ def _of_path(fine, told, asked, arm: OracleArm, task) -> Iterator[Fault]:
                 yield Fault("false found", f"{told['name']}: {breach.limit} by {breach.amount}")
 
 
-def _of_text(told: Told, content, text: str) -> Iterator[Fault]:
+def faults_of_sampled_text(told: Told, content, text: str) -> Iterator[Fault]:
     """Check the lines of the text: each must be one that is known, every number that the JSON has right."""
     surfaces = {each["name"]: each for each in content["surfaces"] or []}
     paths = {each["name"]: each for each in content["paths"] or []}
