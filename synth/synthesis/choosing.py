@@ -83,7 +83,8 @@ def _searched(runs: Sequence[Run], alternatives: int, watch: Watch) -> Run:
             if watch.is_up():
                 break
         for run in unmet:
-            run.look_beside(alternatives)
+            if run.search.polishing.found:
+                run.look_beside(alternatives)
         best = best_run(runs)
         if best.does_all or watch.is_up():
             break
