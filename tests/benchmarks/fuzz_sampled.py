@@ -17,7 +17,7 @@ from fuzz_tasks import ROOM, fuzz_task, legal_joints, planted_arm, with_obstacle
 from oracle import OracleArm, distance_from_solid, longest_rod
 from planted_paths import joint_curve
 
-FAMILIES = ("points", "catalogue", "mesh", "scan", "path")
+FAMILIES = ("points", "catalogue", "mesh", "scan", "path", "shape")
 _WILD = 0.3  # share of the tasks
 _CATALOGUE = 0.4  # share of the sampled ones
 _GRID = 7  # postures of a patch either way in which the arm must be legal
@@ -41,6 +41,8 @@ def _sampled(number: int, family: str) -> FuzzTask:
     while True:
         tags: list[str] = [family]
         content = random_content(rng, tags)
+        if family == "shape" and content.get("topology", "general") == "general":
+            continue
         task = parsed(content)
         arm = planted_arm(task, rng)
         patch = None if arm is None else _patch(task, arm, rng)
@@ -52,7 +54,8 @@ def _sampled(number: int, family: str) -> FuzzTask:
             tags.append("catalogue")
         content = {"synth": content["synth"], "name": f"fuzz {number}"} | content
         fuzz = FuzzTask(number, kind, content, arm, tags=tags)
-        _ask_for(fuzz, rng, family, *patch)
+        if not _ask_for(fuzz, rng, family, *patch):
+            continue
         if is_meant({key: fuzz.content[key] for key in fuzz.content if key not in {"surface", "path"}}):
             return fuzz
 
@@ -77,8 +80,12 @@ def _patch(task, arm: OracleArm, rng):
     return low, high, grid
 
 
-def _ask_for(fuzz: FuzzTask, rng, family: str, low, high, grid) -> None:
-    """Put obstacles and a surface or a path of a patch into a task, moved a little if it is a wild one."""
+def _ask_for(fuzz: FuzzTask, rng, family: str, low, high, grid) -> bool:
+    """Put obstacles and a surface or a path of a patch into a task, moved a little if it is a wild one.
+
+    Returns:
+        Whether there is one.
+    """
     arm = fuzz.planted
     task = parsed(fuzz.content)
     size = 1e3 * (task.robot.link.length.upper + longest_rod(task.robot))
@@ -95,10 +102,12 @@ def _ask_for(fuzz: FuzzTask, rng, family: str, low, high, grid) -> None:
         ),
     )
     move = _moved(fuzz, rng, size)
-    entry = {"mesh": _mesh, "scan": _scan, "path": _path}[family](fuzz, rng, low, high, move)
+    asks = {"mesh": _mesh, "scan": _scan, "path": _path, "shape": _shape}[family]
+    entry = asks(fuzz, rng, low, high, move)
     if fuzz.kind == "wild":
         fuzz.planted = None
-    fuzz.content = rounded(fuzz.content | entry)
+    fuzz.content = rounded(fuzz.content | (entry or {}))
+    return entry is not None
 
 
 def _moved(fuzz: FuzzTask, rng, size):
@@ -150,6 +159,53 @@ def _scan(fuzz: FuzzTask, rng, low, high, move):
     rows = [f"{x!r},{y!r},{z!r}" for x, y, z in (1e3 * points).tolist()]
     fuzz.files["scan.csv"], fuzz.fine["scan"] = "\n".join(["x,y,z", *rows]) + "\n", points
     return {"surface": surface}
+
+
+def _shape(fuzz: FuzzTask, rng, low, high, move):
+    """Return a part of the sphere or the level rectangle that an arm of a special topology covers."""
+    arm, topology = fuzz.planted, fuzz.content["topology"]
+    middle = arm.reached(0.5 * (low + high))
+    centre = arm.to_task(arm.axis_points[1 if topology == "puma" else 0])
+    radius = np.linalg.norm(middle - centre)
+    size = 1e-3 * float(log_uniform(rng, 10.0, 400.0))
+    for _ in range(8):
+        fine = middle + rng.uniform(-size, size, (4 * _FINE, 3))
+        if topology == "scara":
+            fine[:, 2] = middle[2]
+        else:
+            fine = centre + radius * (fine - centre) / np.linalg.norm(fine - centre, axis=1, keepdims=True)
+        fine = fine[np.linalg.norm(fine - middle, axis=1) <= size][:_FINE]
+        if _is_reached(fuzz, fine[:60]):
+            break
+        size *= 0.5
+    else:
+        return None
+    fuzz.fine["shape"] = fine
+    shift = 1e3 * (move(middle) - middle)
+    region = [{"sphere": {"center": 1e3 * middle, "radius": 1e3 * size}}]
+    if topology == "scara":
+        square = {"center": 1e3 * middle, "normal": [0, 0, 1], "along": [1, 1, 0], "size": [2e3 * size] * 2}
+        asked = {"rectangle": square | {"center": square["center"] + shift}}
+    else:
+        asked = {"sphere": {"center": 1e3 * centre + shift, "radius": 1e3 * radius}}
+    if fuzz.kind == "wild":  # then all of it is moved as one
+        fuzz.fine["shape"] = fine + 1e-3 * shift
+        region[0]["sphere"]["center"] = 1e3 * middle + shift
+    tolerance = 1e3 * _tolerance(fuzz, rng, 0.0)
+    return {"surface": {"name": "shape", **asked, "region": region, "tolerance": tolerance} | _less(rng)}
+
+
+def _is_reached(fuzz: FuzzTask, points):
+    """Whether an arm reaches points, and is legal and clear of everything there."""
+    arm, task = fuzz.planted, parsed(fuzz.content)
+    joints = arm.closest(points)
+    if not len(points) or arm.misses(joints, points).max() > 1e-7:
+        return False
+    solids = [obstacle.solid for obstacle in task.obstacles]
+    return not any(
+        arm.breaches_at(each, task.floor_in_base, solids) or arm.rod_from_tube(each) < _CLEAR
+        for each in joints
+    )
 
 
 def _less(rng):
