@@ -7,9 +7,11 @@ import pytest
 from planted import ROBOT
 from planted_surfaces import as_mesh, as_task, patch
 
+from synth.errors import InputError
+from synth.geometry import Sphere
 from synth.robot import Arm, Interval, JointLimits
-from synth.surfaces import Surface, TriangleMesh
-from synth.synthesis.check import between_samples
+from synth.surfaces import Profile, Revolved, Surface, TriangleMesh
+from synth.synthesis.check import between_samples, verify
 from synth.synthesis.check.cell_bounds import largest_misses
 from synth.watch import Watch
 
@@ -105,3 +107,21 @@ def test_where_joint_1_begins_to_count_its_turn_a_surface_is_covered_too():
     band = Surface("band", TriangleMesh(corners), tolerance=1e-3)
     task = replace(as_task("band", band), robot=free.robot)
     assert between_samples(task, free, band, Watch()).met
+
+
+@pytest.mark.parametrize("size", [3e-3, 5e-3])
+@pytest.mark.parametrize("coverage", [0.6, 1.0])
+def test_of_a_part_for_which_there_are_no_finer_cells_what_is_known_is_told(size, coverage):
+    """A spot of a whole sphere, of which few cells have their points in it: with others there may be none."""
+    arm, (low, high) = patch(4)
+    spot = arm.forward_kinematics(*(0.5 * (low + high)))
+    sphere = Revolved(Profile.SPHERE, float(np.linalg.norm(spot)))
+    surface = Surface("spot", sphere, tolerance=1e-2, coverage=coverage, region=(Sphere(spot, size),))
+    assert 0 < len(surface.samples) < 100
+    assert verify(as_task("spot", surface), arm).found
+
+
+def test_a_part_smaller_than_any_cell_is_refused_with_that_reason():
+    sphere = Revolved(Profile.SPHERE, 0.8)
+    with pytest.raises(InputError, match="leaves nothing of the surface, or a part smaller than one of its"):
+        Surface("spot", sphere, region=(Sphere(0.8 * np.array([0.6, 0.0, 0.8]), 1e-5),))

@@ -67,8 +67,13 @@ class Surface:
             checks.report("margin", "this surface has no boundary of its own to keep from")
         checks.refuse()
         if not len(self.samples):
-            checks.report("region" if self.region else "margin", "leaves nothing of the surface")
+            smaller = f", or a part smaller than one of its {_MOST_CELLS} cells" * (not self._is_scan)
+            checks.report("region" if self.region else "margin", f"leaves nothing of the surface{smaller}")
         checks.refuse()
+
+    @property
+    def _is_scan(self) -> bool:
+        return isinstance(self.shape, Scan)
 
     @cached_property
     def samples(self) -> Cells:
@@ -90,7 +95,7 @@ class Surface:
         for _ in range(_TRIES):
             cells, counts = self._divided(asked)
             left = int(np.count_nonzero(counts))
-            if left >= 0.5 * count or asked >= _MOST_CELLS or isinstance(self.shape, Scan):
+            if left >= 0.5 * count or asked >= _MOST_CELLS or self._is_scan:
                 break
             asked = min(int(asked * min(count / max(left, 1), 30.0)), _MOST_CELLS)
         return cells, counts

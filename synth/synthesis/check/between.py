@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.arrays import frozen
+from synth.surfaces import SAMPLES, Cells
 from synth.synthesis.check.cell_bounds import largest_misses
 from synth.synthesis.check.covering import Between
 from synth.synthesis.check.following import followed
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
     from synth.arrays import FloatArray
     from synth.robot import Arm
-    from synth.surfaces import Cells, Surface
+    from synth.surfaces import Surface
     from synth.synthesis.check.verification import Verification
     from synth.task import Task
 
@@ -80,7 +81,9 @@ def _told_finely(task: Task, arm: Arm, check: Verification, watch: Watch) -> Ver
         if covering.asked >= 1.0 or not covering.is_joined or not check.possible or watch.is_up():
             continue
         surface = next(each for each in task.surfaces if each.name == covering.name)
-        cells = surface.cells(_TOLD_BY * len(surface.samples))
+        cells = Cells.take(*_divided(surface, _TOLD_BY))
+        if not len(cells):
+            continue
         within = np.array(verify_targets(task.asking_for(points_of(surface, cells)), arm).within_tolerance)
         finely = replace(
             covering,
@@ -92,6 +95,11 @@ def _told_finely(task: Task, arm: Arm, check: Verification, watch: Watch) -> Ver
     return replace(check, coverings=tuple(told))
 
 
+def _divided(surface: Surface, finer: int) -> tuple[Cells, NDArray[np.bool_]]:
+    """Return so many times the cells of the samples, and which count; maybe none of so small a part."""
+    return surface.divided(finer * max(SAMPLES, len(surface.samples)))
+
+
 def between_samples(task: Task, arm: Arm, surface: Surface, watch: Watch) -> Between:
     """Return what is proven to be covered of a surface that is known between its samples.
 
@@ -101,13 +109,16 @@ def between_samples(task: Task, arm: Arm, surface: Surface, watch: Watch) -> Bet
         surface: One of the task's surfaces.
         watch: When it is up, no finer cells are looked at.
     """
-    level = _Level(*surface.divided(len(surface.samples)))
+    level = _Level(*surface.divided(SAMPLES))  # whose cells that count are the samples
     level.look(task, arm, surface)
     for finer in _FINER:
         told = level.told(surface)
         if told.met or watch.is_up():
             return told
-        level = level.finer(*surface.divided(finer * len(surface.samples)), surface)
+        cells, counts = _divided(surface, finer)
+        if not counts.any():  # of so small a part no finer cells are to be had
+            return told
+        level = level.finer(cells, counts, surface)
         if level.unknown > _MOST_CELLS:
             return told
         level.look(task, arm, surface)
