@@ -135,6 +135,10 @@ class Run:
         return whole
 
     @property
+    def _why_broken(self) -> tuple[str, ...]:
+        return () if self.broke_off is None else (f"the search broke off: {in_a_line(self.broke_off)}",)
+
+    @property
     def kept_back(self) -> float:
         """Which share of the time the search leaves for looking at all targets."""
         count = len(self.task.targets)
@@ -156,16 +160,14 @@ class Run:
         with self.kept():
             status, reasons = _verdict(self, whole)
         words = status.sentence
-        if self.broke_off is not None:
-            reasons = (f"the search broke off: {in_a_line(self.broke_off)}", *reasons)
         with self.kept():
-            words = message(task, status, designs, reasons)
+            words = message(task, status, designs, (*self._why_broken, *reasons))
         no_time = note_on_ways(designs, interrupted=self.watch.interrupted)
         return Solution(
             replace(task, places=self.places),
             status,
             words,
-            reasons,
+            (*self._why_broken, *reasons),
             self.seed,
             designs,
             self.search.starts,

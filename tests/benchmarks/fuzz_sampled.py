@@ -134,7 +134,8 @@ def _mesh(fuzz: FuzzTask, rng, low, high, move):
     grid = move(arm.reached(joints))
     a, b, c, d = grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]
     faces = np.concatenate([np.stack([a, b, c], axis=2), np.stack([a, c, d], axis=2)]).reshape(-1, 3, 3)
-    some = faces[rng.integers(len(faces), size=_FINE)]
+    areas = np.linalg.norm(np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0]), axis=1)
+    some = faces[rng.choice(len(faces), size=_FINE, p=areas / areas.sum())]
     fine = np.einsum("nc,ncx->nx", rng.dirichlet(np.ones(3), _FINE), some)
     off = arm.misses(arm.closest(fine), fine).max()
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in (1e3 * faces).reshape(-1, 3).tolist()]
