@@ -31,7 +31,7 @@ def _look(report: Report, name: str) -> dict[str, object]:
         return {"color": INK, "linewidth": 2.5, "marker": "o", "linestyle": "-"}
     peers = [other for other in report.methods if other not in report.kin]
     if name not in peers:
-        number = sorted(report.kin).index(name)
+        number = list(report.kin).index(name)
         return {
             "color": INK,
             "linewidth": 1.2,

@@ -42,7 +42,7 @@ class Report:
         outcomes: One for each task.
         least: The least RMS miss known of each noisy task, m.
         ours: The method that the others are compared with.
-        kin: `synth` itself, in its forms: no peers.
+        kin: `synth` itself, in its forms, which are no peers; and each in the words of a sentence.
         no_arms: Peers whose answers are no arms, and do not count as the fastest.
         budget: Time after which a method was stopped, s.
     """
@@ -50,7 +50,7 @@ class Report:
     outcomes: list[Outcome]
     least: dict[int, float]
     ours: str
-    kin: frozenset[str]
+    kin: dict[str, str]
     no_arms: frozenset[str]
     budget: float
 
@@ -60,7 +60,7 @@ class Report:
 
     @property
     def peers(self) -> list[str]:
-        return [name for name in self.methods if name not in self.kin | self.no_arms]
+        return [name for name in self.methods if name not in self.no_arms and name not in self.kin]
 
     @property
     def planted(self) -> list[Outcome]:
@@ -121,18 +121,17 @@ class Report:
 
     def _fastest(self, outcomes: list[Outcome], part: str) -> str:
         """Say how long the fastest peer of each task takes beside each form of `synth`."""
-        ratios = {
-            name: np.median(
-                [
-                    min(getattr(o, part)[peer].time for peer in self.peers) / o.results[name].seconds
-                    for o in outcomes
-                ]
-            )
-            for name in self.methods
-            if name in self.kin
-        }
-        beside = ", ".join(f"{_number(ratio)} times as long as {name}" for name, ratio in ratios.items())
-        return f"the fastest peer of each task takes {beside} (medians of {len(outcomes)} tasks)"
+        fastest = [min(getattr(o, part)[peer].time for peer in self.peers) for o in outcomes]
+        if not math.isfinite(np.median(fastest)):
+            return "on most tasks no peer equals it"
+        beside = []
+        for name, words in self.kin.items():
+            if name == self.ours or any(o.results[name] is not o.results[self.ours] for o in outcomes):
+                ratio = np.median(np.divide(fastest, [o.results[name].seconds for o in outcomes]))
+                beside.append(f"{ratio:.2g} times as long as {words}")
+        *first, last = beside
+        listed = f"{', '.join(first)} and {last}"
+        return f"the fastest peer of each task takes {listed} (medians of {len(outcomes)} tasks)"
 
     def _equal(self, part: str) -> str:
         """Say which peers equal `synth` on all noisy tasks, and how their times compare."""
@@ -141,11 +140,12 @@ class Report:
         for name in self.peers:
             if all(getattr(o, part)[name].reached for o in self.noisy):
                 ratio = self._figures(self.noisy, name, part)[-1]
-                equal.append(f"{name} at {ratio} times its time")
+                equal.append(f"{name} in {ratio} times its time")
         if not equal:
             most = max(sum(getattr(o, part)[name].reached for o in self.noisy) for name in self.peers)
             return f"no peer equals {whole}, the best of them on {most}"
-        return f"{len(equal)} of {len(self.peers)} peers equal {whole}: {', '.join(equal)} (median)"
+        verb = "equals" if len(equal) == 1 else "equal"
+        return f"{len(equal)} of {len(self.peers)} peers {verb} {whole}: {', '.join(equal)} (median)"
 
 
 def markdown_table(head: list[str], rows: list[list[str]]) -> list[str]:
@@ -160,10 +160,6 @@ def markdown_table(head: list[str], rows: list[list[str]]) -> list[str]:
 
 def _excess(over: list[float]) -> str:
     return f"{_percent(float(np.median(over)))}, {_percent(max(over))}"
-
-
-def _number(ratio: float) -> str:
-    return f"{ratio:.2g}" if math.isfinite(ratio) else "immeasurably more"
 
 
 def _percent(fraction: float) -> str:

@@ -48,6 +48,7 @@ if TYPE_CHECKING:
 
 SYNTH, FIRST = "`synth.solve`", "the same, stopped when found"
 FLOOR = "floor: the answer itself, polished again"
+KIN = {SYNTH: SYNTH, FIRST: "that stopped when found", FLOOR: "the floor"}
 SAME_MODEL = 1e-9  # m
 NOISY = 0  # in place of a number of planted targets
 
@@ -164,7 +165,7 @@ def main() -> None:
             times = "; ".join(f"{result.time:.3f}" for result in done.results.values())
             print(f"{done.targets:>3} targets, seed {done.seed}: {times}", file=sys.stderr, flush=True)
     least = least_rms(outcomes)
-    report = Report(outcomes, least, SYNTH, frozenset({SYNTH, FIRST, FLOOR}), NOT_AN_ARM, arguments.budget)
+    report = Report(outcomes, least, SYNTH, KIN, NOT_AN_ARM, arguments.budget)
     print(report.text())
     if arguments.write:
         remember(least)
