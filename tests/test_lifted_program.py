@@ -14,6 +14,7 @@ sys.path.insert(0, str(Path(__file__).parent / "benchmarks"))
 from lifted_program import PER_METRE, LiftedProgram
 from peer_tasks import noisy_task
 
+from synth.robot import Interval
 from synth.synthesis.shapes import Shapes
 
 
@@ -103,11 +104,13 @@ def test_what_joint_2_cannot_do_is_no_point_of_the_program(shapes):
     assert Stated(there, 1e-4).excess(values) > 0.1
 
 
-def test_a_link_that_is_too_long_is_no_point_of_the_program(shapes):
-    task = noisy_task(1, 6)
-    short = replace(
-        task, robot=replace(ROBOT, link=replace(ROBOT.link, length=type(ROBOT.link.length)(0.1, 0.11)))
-    )
-    joints, misses = shapes.arm(0, task.base).closest_joints(task.positions_in_base)
-    values = values_of(shapes, 0, joints[:, 1], task.positions_in_base, misses.max())
-    assert Stated(short, misses.max() + 1e-4).excess(values) > 0.1
+def test_a_straight_link_just_fits_and_one_a_millimetre_shorter_does_not_reach_its_end():
+    task, longest = noisy_task(1, 6), ROBOT.link.length.upper
+    straight = Shapes(ROBOT, np.append(np.zeros(8), longest)[None])
+    joints, misses = straight.arm(0, task.base).closest_joints(task.positions_in_base)
+    values = values_of(straight, 0, joints[:, 1], task.positions_in_base, misses.max())
+    assert Stated(task, misses.max() + 1e-4).excess(values) < 1e-10
+    link = replace(ROBOT.link, length=Interval(ROBOT.link.length.lower, longest - 1e-3))
+    shorter = replace(task, robot=replace(ROBOT, link=link))
+    beyond = PER_METRE**2 * (longest**2 - (longest - 1e-3) ** 2)
+    assert Stated(shorter, misses.max() + 1e-4).excess(values) == pytest.approx(beyond)

@@ -51,8 +51,8 @@ def peers(**changes):
 def test_the_fastest_peer_is_compared_with_each_form_of_ours():
     text = report(peers()).text()
     assert (
-        "planted: the fastest peer of each task takes 0.12 times as long as `synth.solve`, 0.25 times as long "
-        "as that stopped when found and 0.5 times as long as the floor (medians of 2 tasks)"
+        "planted: the fastest peer of each task takes 0.12 times as long as `synth.solve`, 0.25 times as "
+        "long as that stopped when found and 0.5 times as long as the floor (medians of 2 tasks)"
     ) in text
 
 
