@@ -89,7 +89,7 @@ def noisy_picture(report: Report) -> Figure:
             )
         axes.set_title(title, fontsize=10, loc="left")
         axes.set_ylabel("noisy tasks equalled")
-        axes.yaxis.set_major_formatter(PercentFormatter(1.0))
+        axes.yaxis.set_major_formatter(PercentFormatter(1.0, symbol=" %"))
         axes.set_ylim(-0.04, 1.04)
         axes.grid(alpha=0.3)
     panels[0].set_xscale("log")

@@ -126,7 +126,7 @@ class Report:
             return "on most tasks no peer equals it"
         beside = []
         for name, words in self.kin.items():
-            if name == self.ours or any(o.results[name] is not o.results[self.ours] for o in outcomes):
+            if name == self.ours or any(o.results[name] != o.results[self.ours] for o in outcomes):
                 ratio = np.median(np.divide(fastest, [o.results[name].seconds for o in outcomes]))
                 beside.append(f"{ratio:.2g} times as long as {words}")
         *first, last = beside
