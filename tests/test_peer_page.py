@@ -1,6 +1,7 @@
 """What the page of other optimisers says follows from the figures, and its pictures can be read."""
 
 import sys
+from dataclasses import replace
 from itertools import starmap
 from pathlib import Path
 from types import SimpleNamespace
@@ -75,6 +76,12 @@ def test_where_no_peer_reaches_most_goals_no_ratio_is_told():
     assert text.count("on most tasks no peer equals it") == 2
     assert "inf" not in text
     assert "nan" not in text
+
+
+def test_a_hair_below_the_least_known_is_no_minus_nothing():
+    told = report(peers())
+    least = {seed: 0.02 * (1.0 + 1e-9) for seed in range(3)}
+    assert "-0.00" not in replace(told, least=least).text()
 
 
 def test_success_grows_with_each_task_and_ends_at_the_share_that_was_equalled():

@@ -165,7 +165,8 @@ def _excess(over: list[float]) -> str:
 def _percent(fraction: float) -> str:
     if not math.isfinite(fraction):
         return "none found"
-    return f"{100 * fraction:.2f} %" if fraction < 10.0 else "over 1000 %"
+    rounded = round(100.0 * fraction, 2) + 0.0  # no minus before a zero
+    return f"{rounded:.2f} %" if fraction < 10.0 else "over 1000 %"
 
 
 def write(report: Report, arguments: Namespace) -> None:
