@@ -80,7 +80,7 @@ def test_where_no_peer_reaches_most_goals_no_ratio_is_told():
 
 def test_a_hair_below_the_least_known_is_no_minus_nothing():
     told = report(peers())
-    least = {seed: 0.02 * (1.0 + 1e-9) for seed in range(3)}
+    least = dict.fromkeys(range(3), 0.02 * (1.0 + 1e-09))
     assert "-0.00" not in replace(told, least=least).text()
 
 
