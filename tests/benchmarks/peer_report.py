@@ -180,10 +180,8 @@ def write(report: Report, arguments: Namespace) -> None:
 
 def write_bounds(table: str, seconds: float) -> None:
     """Store the table of bounds on the page."""
-    _replace(
-        "peers.py --bounds",
-        f"At most {seconds:g} s of processor time each, one thread; {_machine()}.\n\n{table}",
-    )
+    stopped = f"Stopped after {seconds:g} s of processor time (SCIP: of its user time), on one thread"
+    _replace("peers.py --bounds", f"{stopped}; {_machine()}.\n\n{table}")
 
 
 def _machine() -> str:
