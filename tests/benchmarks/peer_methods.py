@@ -24,6 +24,7 @@ from synth.errors import SolverError
 from synth.synthesis import solve
 from synth.synthesis.nlp import Structure, shared_nlp
 from synth.synthesis.shapes.shapes import ARCS
+from synth.watch import Watch
 
 Method = Callable[[Race], None]
 
@@ -161,12 +162,13 @@ def least_squares_compiled(race: Race) -> None:
 def lifted(race: Race) -> None:
     """Multi-start Ipopt on the lifted form, `synth`'s own program, from random shapes."""
     nlp = shared_nlp(Structure.of(race.task), ARCS, False, threading.get_ident())
+    watch = Watch(stop=lambda: race.seconds > race.budget)
     while not race.over:
         for start in race.starts():
             arm = race.arm(start)
             joints, _ = arm.closest_joints(race.targets)
             try:
-                answer = nlp.solve(race.task, arm, joints, lambda: race.seconds > race.budget)
+                answer = nlp.solve(race.task, arm, joints, watch)
             except SolverError:
                 continue
             if race.offer_arm(answer.arm, answer.joints):

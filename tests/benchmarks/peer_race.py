@@ -12,7 +12,7 @@ import numpy as np
 from compiled_link import UNKNOWNS, constants
 from compiled_residuals import jacobian, residuals
 
-from synth.synthesis.check.verification import verify
+from synth.synthesis.check import verify
 from synth.synthesis.shapes.shapes import Shapes, into_limits
 from synth.task import PointTarget, Task
 

@@ -1,4 +1,4 @@
-"""The table and the plot of `peers.py`, on the screen and in docs."""
+"""The tables of `peers.py` and what follows from them, on the screen and in docs."""
 
 from __future__ import annotations
 
@@ -10,19 +10,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.backends.backend_svg import FigureCanvasSVG
-from matplotlib.figure import Figure
 
 if TYPE_CHECKING:
     from argparse import Namespace
 
     from peer_race import Result
 
-DOCS = Path(__file__).parents[2] / "docs"
-PAGE, PICTURE = DOCS / "peers.md", DOCS / "pictures" / "peers.svg"
-_BEGIN, _END = "<!-- written by tests/benchmarks/peers.py -->", "<!-- end -->"
+PAGE = Path(__file__).parents[2] / "docs" / "peers.md"
 _NOISY = ["noisy: equalled", "RMS over the least known: median, worst", "time, s", "ratio"]
 _TOLD = ["method", "planted: reached", "time, s", "ratio", *_NOISY]
 _UNTOLD = ["method", *_NOISY]
@@ -47,15 +42,25 @@ class Report:
         outcomes: One for each task.
         least: The least RMS miss known of each noisy task, m.
         ours: The method that the others are compared with.
-        no_peers: Methods that do not count as the fastest peer.
+        kin: `synth` itself, in its forms, which are no peers; and each in the words of a sentence.
+        no_arms: Peers whose answers are no arms, and do not count as the fastest.
         budget: Time after which a method was stopped, s.
     """
 
     outcomes: list[Outcome]
     least: dict[int, float]
     ours: str
-    no_peers: frozenset[str]
+    kin: dict[str, str]
+    no_arms: frozenset[str]
     budget: float
+
+    @property
+    def methods(self) -> list[str]:
+        return list(self.outcomes[0].results)
+
+    @property
+    def peers(self) -> list[str]:
+        return [name for name in self.methods if name not in self.no_arms and name not in self.kin]
 
     @property
     def planted(self) -> list[Outcome]:
@@ -74,11 +79,11 @@ class Report:
         return "\n".join(
             [
                 "Told the goal, and stopped when it is reached:\n",
-                *_table(_TOLD, [self._told(name) for name in self.outcomes[0].results]),
+                *markdown_table(_TOLD, [self._told(name) for name in self.methods]),
                 "\nNot told, each run to its own end, noisy tasks only:\n",
-                *_table(_UNTOLD, [self._untold(name) for name in self.outcomes[0].results]),
+                *markdown_table(_UNTOLD, [self._untold(name) for name in self.methods]),
                 "",
-                *(f"- {line}" for line in self._aims()),
+                *(f"- {line}" for line in self._findings()),
             ]
         )
 
@@ -102,23 +107,11 @@ class Report:
             f"{ratio:.3g}" if math.isfinite(ratio) else "-",
         )
 
-    def _aims(self) -> list[str]:
-        """Return how `synth` stands to the fastest peer of each task, and to the least miss."""
-        lines = []
-        for title, outcomes, part in (
-            ("planted", self.planted, "results"),
-            ("noisy, told the goal", self.noisy, "results"),
-            ("noisy, not told", self.noisy, "untold"),
-        ):
-            ratios = [
-                min(result.time for name, result in getattr(o, part).items() if name not in self.no_peers)
-                / o.results[self.ours].seconds
-                for o in outcomes
-            ]
-            lines.append(
-                f"{title}: the fastest peer of each task takes {np.median(ratios):.2g} times as long as "
-                f"{self.ours} for the same miss (median of {len(ratios)} tasks)."
-            )
+    def _findings(self) -> list[str]:
+        """Return how `synth` stands to the fastest peer of each task, to all peers, and to the least miss."""
+        lines = [f"planted: {self._fastest(self.planted, 'results')}."]
+        for title, part in (("told the goal", "results"), ("not told", "untold")):
+            lines.append(f"noisy, {title}: {self._fastest(self.noisy, part)}; {self._equal(part)}.")
         over = self.over(self.ours)
         lines.append(
             f"noisy: {self.ours} is at most {_percent(max(over))} over the least RMS miss known; "
@@ -126,26 +119,36 @@ class Report:
         )
         return lines
 
-    def plot(self) -> Figure:
-        """Draw the median time against the number of planted targets, where at least half reach them."""
-        figure = Figure(figsize=(7.5, 4.4), layout="constrained")
-        axes = figure.add_subplot()
-        counts = sorted({outcome.kind for outcome in self.planted})
-        for name, marker in zip(self.outcomes[0].results, "o.sD^v<>P*", strict=False):
-            times = [np.median([o.results[name].time for o in self.planted if o.kind == n]) for n in counts]
-            bold = {"linewidth": 2.5, "color": "black"} if name == self.ours else {"linewidth": 1.2}
-            seen = np.where(np.isfinite(times), times, np.nan)
-            axes.loglog(counts, seen, marker=marker, label=name.strip("`"), **bold)
-        axes.set_xticks(counts, [str(count) for count in counts])
-        axes.minorticks_off()
-        axes.set_xlabel("planted targets")
-        axes.set_ylabel("median time until all are within 1 mm, s")
-        axes.grid(alpha=0.3)
-        figure.legend(loc="outside right upper", fontsize=8, frameon=False)
-        return figure
+    def _fastest(self, outcomes: list[Outcome], part: str) -> str:
+        """Say how long the fastest peer of each task takes beside each form of `synth`."""
+        fastest = [min(getattr(o, part)[peer].time for peer in self.peers) for o in outcomes]
+        if not math.isfinite(np.median(fastest)):
+            return "on most tasks no peer equals it"
+        beside = []
+        for name, words in self.kin.items():
+            if name == self.ours or any(o.results[name] != o.results[self.ours] for o in outcomes):
+                ratio = np.median(np.divide(fastest, [o.results[name].seconds for o in outcomes]))
+                beside.append(f"{ratio:.2g} times as long as {words}")
+        *first, last = beside
+        listed = f"{', '.join(first)} and {last}"
+        return f"the fastest peer of each task takes {listed} (medians of {len(outcomes)} tasks)"
+
+    def _equal(self, part: str) -> str:
+        """Say which peers equal `synth` on all noisy tasks, and how their times compare."""
+        whole = f"{self.ours} on all {len(self.noisy)} tasks"
+        equal = []
+        for name in self.peers:
+            if all(getattr(o, part)[name].reached for o in self.noisy):
+                ratio = self._figures(self.noisy, name, part)[-1]
+                equal.append(f"{name} in {ratio} times its time")
+        if not equal:
+            most = max(sum(getattr(o, part)[name].reached for o in self.noisy) for name in self.peers)
+            return f"no peer equals {whole}, the best of them on {most}"
+        verb = "equals" if len(equal) == 1 else "equal"
+        return f"{len(equal)} of {len(self.peers)} peers {verb} {whole}: {', '.join(equal)} (median)"
 
 
-def _table(head: list[str], rows: list[list[str]]) -> list[str]:
+def markdown_table(head: list[str], rows: list[list[str]]) -> list[str]:
     """Return the lines of a table in Markdown."""
     widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
     lines = [
@@ -162,19 +165,35 @@ def _excess(over: list[float]) -> str:
 def _percent(fraction: float) -> str:
     if not math.isfinite(fraction):
         return "none found"
-    return f"{100 * fraction:.2f} %" if fraction < 10.0 else "over 1000 %"
+    rounded = round(100.0 * fraction, 2) + 0.0  # no minus before a zero
+    return f"{rounded:.2f} %" if fraction < 10.0 else "over 1000 %"
 
 
 def write(report: Report, arguments: Namespace) -> None:
-    """Store table and plot where docs show them."""
-    PICTURE.parent.mkdir(exist_ok=True)
-    with mpl.rc_context({"svg.hashsalt": "synth"}):
-        FigureCanvasSVG(report.plot()).print_svg(PICTURE, metadata={"Date": None})
+    """Store the tables on the page."""
     machine = (
         f"{arguments.tasks} tasks of each kind, {arguments.budget:g} s for each method and task, "
-        f"{arguments.clock} time; {platform.python_implementation()} {platform.python_version()} on "
-        f"{platform.machine()}, {os.cpu_count()} cores, {arguments.workers} task at a time."
+        f"{arguments.clock} time; {_machine()}, {arguments.workers} task at a time."
     )
-    generated = f"{_BEGIN}\n\n{machine}\n\n{report.text()}\n\n{_END}"
-    page, pattern = PAGE.read_text(), f"{re.escape(_BEGIN)}.*?{re.escape(_END)}"
-    PAGE.write_text(re.sub(pattern, lambda _: generated, page, flags=re.DOTALL))
+    _replace("peers.py", f"{machine}\n\n{report.text()}")
+
+
+def write_bounds(table: str, seconds: float) -> None:
+    """Store the table of bounds on the page."""
+    stopped = f"Stopped after {seconds:g} s of processor time (SCIP: of its user time), on one thread"
+    _replace("peers.py --bounds", f"{stopped}; {_machine()}.\n\n{table}")
+
+
+def _machine() -> str:
+    return (
+        f"{platform.python_implementation()} {platform.python_version()} on {platform.machine()}, "
+        f"{os.cpu_count()} cores"
+    )
+
+
+def _replace(command: str, text: str) -> None:
+    """Replace what a command wrote on the page, between its mark and the next end."""
+    begin, end = f"<!-- written by tests/benchmarks/{command} -->", "<!-- end -->"
+    pattern = f"{re.escape(begin)}.*?{re.escape(end)}"
+    page = re.sub(pattern, lambda _: f"{begin}\n\n{text}\n\n{end}", PAGE.read_text(), flags=re.DOTALL)
+    PAGE.write_text(page)

@@ -1,12 +1,13 @@
 """`synth.solve` beside seven other ways, on the same tasks, with the same model and measure of miss.
 
-    python tests/benchmarks/peers.py [--tasks 5] [--budget 20] [--counts 4 8 16] [--write] [--scip]
+    python tests/benchmarks/peers.py [--tasks 5] [--budget 20] [--counts 4 8 16] [--write] [--bounds]
 
 Planted tasks are to be reached (worst miss at most 1 mm), noisy ones to be missed no more than `synth` does
 (RMS within 0.1 %). Every peer is stopped at once when it has done so, or when its budget is used up, and
 restarts until then. On noisy tasks, where nobody knows the goal, each also runs to its own end.
---write stores table, plot and record; --scip lets SCIP bound small tasks instead.
-The packages are those of the extra `bench`. The full run: --tasks 20 --budget 60 --counts 2 4 8 16 32.
+--write stores tables, pictures and record; --bounds asks instead what is proven of a few tasks: by SCIP, by
+Gurobi where its package is installed, and by `synth solve --prove`. The packages are those of the extra
+`bench`.
 """
 
 from __future__ import annotations
@@ -27,10 +28,11 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import compiled_miss
 from compiled_link import constants
 from noisy import known, remember
-from peer_gamma import scip_bound
+from peer_bounds import bounds_table
 from peer_methods import METHODS, NOT_AN_ARM, first_shape
+from peer_pictures import draw
 from peer_race import CLOCKS, REACHED, Race, Result, warmed_up
-from peer_report import Outcome, Report, write
+from peer_report import Outcome, Report, write, write_bounds
 from peer_tasks import noisy_task
 from planted import planted_task
 
@@ -46,6 +48,7 @@ if TYPE_CHECKING:
 
 SYNTH, FIRST = "`synth.solve`", "the same, stopped when found"
 FLOOR = "floor: the answer itself, polished again"
+KIN = {SYNTH: SYNTH, FIRST: "that stopped when found", FLOOR: "the floor"}
 SAME_MODEL = 1e-9  # m
 NOISY = 0  # in place of a number of planted targets
 
@@ -125,17 +128,6 @@ def least_rms(outcomes: list[Outcome]) -> dict[int, float]:
     return least
 
 
-def bound_by_scip(seconds: float) -> None:
-    for count in (2, 6):
-        for kind, task in (("planted", planted_task(0, count)[0]), ("noisy", noisy_task(0, count))):
-            bound, best, took, status = scip_bound(task, seconds)
-            print(
-                f"SCIP, {count} {kind} targets: worst miss at least {max(1e3 * bound, 0.0):.3f} mm, "
-                f"best found {max(1e3 * best, 0.0):.3f} mm, {took:.0f} s, {status}",
-                flush=True,
-            )
-
-
 def arguments_given() -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -145,15 +137,20 @@ def arguments_given() -> argparse.Namespace:
     parser.add_argument("--counts", type=int, nargs="+", default=[4, 8, 16], help="planted targets")
     parser.add_argument("--clock", choices=sorted(CLOCKS), default="wall", help="cpu: on a busy machine")
     parser.add_argument("--workers", type=int, default=1, help="tasks at a time")
-    parser.add_argument("--write", action="store_true", help="store table, plot and record")
-    parser.add_argument("--scip", action="store_true", help="the bound by SCIP, and nothing else")
+    parser.add_argument("--write", action="store_true", help="store tables, pictures and record")
+    parser.add_argument(
+        "--bounds", type=float, nargs="?", const=100.0, metavar="SECONDS",
+        help="what SCIP, Gurobi and --prove prove in so long a time each, and nothing else",
+    )  # fmt: skip
     return parser.parse_args()
 
 
 def main() -> None:
     arguments = arguments_given()
-    if arguments.scip:
-        bound_by_scip(arguments.budget)
+    if arguments.bounds:
+        table = bounds_table(arguments.bounds)
+        if arguments.write:
+            write_bounds(table, arguments.bounds)
         return
     difference = model_difference(noisy_task(0))
     print(f"the compiled misses differ by {difference:.1e} m from those of synth")
@@ -168,11 +165,12 @@ def main() -> None:
             times = "; ".join(f"{result.time:.3f}" for result in done.results.values())
             print(f"{done.targets:>3} targets, seed {done.seed}: {times}", file=sys.stderr, flush=True)
     least = least_rms(outcomes)
-    report = Report(outcomes, least, SYNTH, NOT_AN_ARM | {SYNTH, FIRST, FLOOR}, arguments.budget)
+    report = Report(outcomes, least, SYNTH, KIN, NOT_AN_ARM, arguments.budget)
     print(report.text())
     if arguments.write:
         remember(least)
         write(report, arguments)
+        draw(report)
 
 
 if __name__ == "__main__":
