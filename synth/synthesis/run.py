@@ -77,7 +77,14 @@ class Run:
     @cached_property
     def search(self) -> Search:
         """The search, with the shapes so far."""
-        return Search(self.part, self.seed, self.watch, lambda: bool(self.impossible), self.alternatives)
+        return Search(
+            self.part,
+            self.seed,
+            self.watch,
+            lambda: bool(self.impossible),
+            self.alternatives,
+            sees_all=self.sees_all,
+        )
 
     @cached_property
     def impossible(self) -> tuple[str, ...]:

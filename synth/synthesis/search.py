@@ -28,6 +28,7 @@ ALTERNATIVES = 2  # shapes looked for after one was found, or else starts polish
 _LOOKED_AT = 4  # shapes that a person would want, for each alternative
 _MORE = 2  # than the alternatives, with all ways, of which none need leave nothing to wish for
 _ALTERNATIVES_THAT_MISS = 2  # likewise, at most, where no shape meets all targets
+_NEXT_TO_NOTHING = 0.02  # of the tightest tolerance: a start that misses no more is not polished
 _GAIN = 1e-3  # of the objective: the least that is worth another start
 _BETWEEN, _STARTS_BETWEEN = 20, 6  # points that join the targets of a search; starts polished then
 _LATE = 0.2  # s after the time is up, from when on not even unpolished starts are looked at
@@ -42,6 +43,8 @@ class Search:
         watch: When it is up, the search ends.
         is_impossible: Tells whether it is known that no shape can do the task.
         alternatives: As for `solve`.
+        sees_all: Whether the task is all that is asked. If not, starts that reach all of it are polished,
+            too: leaning on limits they may do less between its targets.
 
     Attributes:
         polishing: The shapes so far.
@@ -55,8 +58,10 @@ class Search:
         watch: Watch,
         is_impossible: Callable[[], bool],
         alternatives: int = ALTERNATIVES,
+        *,
+        sees_all: bool = True,
     ) -> None:
-        self._task, self._seed, self._watch = task, seed, watch
+        self._task, self._seed, self._watch, self._sees_all = task, seed, watch, sees_all
         self._is_impossible, self._alternatives = is_impossible, alternatives
         self.polishing = Polishing(task, watch)
         self.starts = 0
@@ -105,10 +110,13 @@ class Search:
 
     def polish(self, start: Start) -> None:
         """Polish one start point; where that leads astray, again with shorter steps or by squares."""
-        if self._promises_all(start) and self.polishing.keep(start.arm, start.joints).verification.found:
-            self.starts += 1
-            self._since_found += 1
-            return
+        if not self.polishing.found and _promises_all(self._task, start):  # else polished ones are gentler
+            self.polishing.keep(start.arm, start.joints)
+            exact = self._sees_all and start.relative_miss(self._task) <= _NEXT_TO_NOTHING
+            if self.polishing.found and exact:
+                self.starts += 1
+                self._since_found += 1
+                return
         self.polishing.polish(start)
         if self._led_astray(start) and self.polishing.keep(start.arm, start.joints).verification.possible:
             self.polishing.polish(start, near=True)
@@ -140,12 +148,6 @@ class Search:
             if wanted == self._alternatives or passable == self._alternatives + _MORE:
                 break
         return found > 0
-
-    def _promises_all(self, start: Start) -> bool:
-        """Whether a start may reach every target as it is: then there is nothing for the program to do."""
-        if self.polishing.found:  # polished, others are gentler
-            return False
-        return start.cost <= float(self._task.tolerances.min()) ** 2
 
     def _may_be_better(self, start: Start) -> bool:
         """Whether a start may lead to a better shape than the best: not if its valley is above that.
@@ -179,6 +181,14 @@ class Search:
             if start is None:
                 return
             yield start
+
+
+def _promises_all(task: Task, start: Start) -> bool:
+    """Return whether a start may reach every target as it is, and better than what the program makes of it.
+
+    It may reach them all but exactly; and among obstacles the program may lose it.
+    """
+    return start.relative_miss(task) <= (1.0 if task.solids else _NEXT_TO_NOTHING)
 
 
 def _progress(polishing: Polishing, starts: int, at_most: int) -> dict[str, object]:

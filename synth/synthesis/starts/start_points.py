@@ -6,6 +6,7 @@ finds it nearly always, and looking at a shape is ten thousand times cheaper tha
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from typing import TYPE_CHECKING
 
@@ -74,6 +75,10 @@ class Start:
     arm: Arm
     joints: FloatArray
     cost: float = 0.0
+
+    def relative_miss(self, task: Task) -> float:
+        """Return what it misses in the mean, in units of the tightest tolerance."""
+        return math.sqrt(self.cost) / float(task.tolerances.min())
 
     def misses(self, task: Task) -> FloatArray:
         """Return the misses of the targets at its joint angles, shape (n,), m."""
