@@ -111,9 +111,8 @@ class Search:
     def polish(self, start: Start) -> None:
         """Polish one start point; where that leads astray, again with shorter steps or by squares."""
         if not self.polishing.found and _promises_all(self._task, start):  # else polished ones are gentler
-            self.polishing.keep(start.arm, start.joints)
-            exact = self._sees_all and start.relative_miss(self._task) <= _NEXT_TO_NOTHING
-            if self.polishing.found and exact:
+            found = self.polishing.keep(start.arm, start.joints).verification.found
+            if found and self._sees_all and start.relative_miss(self._task) <= _NEXT_TO_NOTHING:
                 self.starts += 1
                 self._since_found += 1
                 return
