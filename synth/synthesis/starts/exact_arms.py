@@ -6,15 +6,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.geometry import arms_near, arms_through_five, arms_through_four, is_generic
+from synth.geometry import Invariants, arms_near, arms_through_five, arms_through_four, is_generic
 from synth.synthesis.starts.refined import relative_weights
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from synth.arrays import FloatArray
-    from synth.geometry import Invariants
     from synth.task import Task
 
 _SETS = 10  # of as few targets as fix an arm, among whose arms is one through all targets, if there is one
+_SHARPLY = 0.1  # of a tolerance: so near is a target that an arm passes through, but for rounding and scans
 _THROUGH = 6  # of these arms, at most: so many may pass through as few targets
 _SETS_OF_MANY, _NEAR = 60, 40  # sets where no arm passes through all; arms near all that are looked at
 
@@ -51,6 +53,21 @@ def arms_near_all(task: Task) -> FloatArray:
     """Return arms that pass near all targets, nearest first, shape (k, 5), as `Invariants`; none as above."""
     near = _arms_near(task, _SETS_OF_MANY, 15)
     return np.empty((0, 5)) if near is None else near[0][:_NEAR]
+
+
+def met_by_one(task: Task) -> NDArray[np.bool_]:
+    """Return which targets the arm that is near most of them is near, shape (n,); none where there is none.
+
+    Near is well within the tolerance, where noise does not blur what is an outlier; the arms are those
+    through sets of as few targets as fix one.
+    """
+    near = _arms_near(task, _SETS_OF_MANY, 0)
+    if near is None or not len(near[0]):
+        return np.zeros(len(task.targets), dtype=np.bool_)
+    positions = task.positions_in_base
+    misses = np.array([Invariants(*row).circle().distance(positions) for row in near[0].tolist()])
+    met = misses <= _SHARPLY * task.tolerances
+    return np.asarray(met[np.argmax(met.sum(axis=1))])
 
 
 def _minimal(task: Task) -> tuple[int, float | None]:

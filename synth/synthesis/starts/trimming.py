@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.synthesis.check import counted, verify_targets
+from synth.synthesis.starts.exact_arms import met_by_one
 from synth.synthesis.starts.random_shapes import shapes_for
 from synth.synthesis.starts.refined import Trimmed
 from synth.synthesis.starts.refinement import refine
@@ -49,6 +50,10 @@ def covered_part(task: Task, seed: int, watch: Watch) -> Task | None:
         watch: When it is up every step ends with what there is.
     """
     task = _above_floor(replace(task, objective=Objective.LEAST_SQUARES))
+    many = random_part(task, SAMPLE, seed)
+    met = met_by_one(many)
+    if _is_enough(many, met):  # outliers are near no arm, or far fewer are
+        return many.asking_for(many.table.take(np.flatnonzero(met)))
     few = random_part(task, _FEW, seed)
     shapes = _promising(few, seed)
     if not len(shapes.length):
@@ -56,7 +61,6 @@ def covered_part(task: Task, seed: int, watch: Watch) -> Task | None:
     refined = refine(few, shapes, iterations=_STEPS, is_up=watch.is_up).best(_GO_ON)
     more = random_part(task, _MORE, seed)
     refined = _led_on(more, refined, watch).best(_BEST)
-    many = random_part(task, SAMPLE, seed)
     refined = _led_on(many, refined, watch)
     best = refined.best(1)
     arm = best.shapes.arm(0, task.base)
@@ -81,6 +85,15 @@ def _above_floor(task: Task) -> Task:
         for surface, share in zip(task.surfaces, left, strict=True)
     )
     return replace(task, targets=task.table.take(np.flatnonzero(~sunk)), surfaces=surfaces)
+
+
+def _is_enough(task: Task, met: NDArray[np.bool_]) -> bool:
+    """Whether those targets are met that must be, and of each surface as large a share as is asked for."""
+    of = task.surface_of_targets
+    return bool(met[of < 0].all()) and all(
+        np.count_nonzero(met & (of == number)) >= surface.coverage * np.count_nonzero(of == number)
+        for number, surface in enumerate(task.surfaces)
+    )
 
 
 def _promising(task: Task, seed: int) -> Shapes:
