@@ -37,6 +37,19 @@ def given(**how: Any) -> Any:
     return field(**how)
 
 
+def unlike_all_before(unlike: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """Return which of some things differ from all that were kept before them, in order.
+
+    Args:
+        unlike: Whether two of them differ, shape (n, n).
+    """
+    kept: list[int] = []
+    for index in range(len(unlike)):
+        if unlike[index, kept].all():
+            kept.append(index)
+    return np.array(kept, dtype=np.intp)
+
+
 def frozen(values: ArrayLike) -> FloatArray:
     """Return a read-only float copy, so that a frozen dataclass is frozen all the way down."""
     array = np.array(values, dtype=np.float64)

@@ -7,12 +7,13 @@ different valleys of the sum of squared misses, and Newton's method leads from e
 
 from __future__ import annotations
 
-from itertools import combinations, islice
+from itertools import combinations
 from math import comb
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from synth.arrays import unlike_all_before
 from synth.errors import GeometryError
 from synth.geometry.exact.exact_arms import arms_through_five, arms_through_four
 from synth.geometry.exact.newton import folded, least_squares, squared_distances
@@ -76,22 +77,14 @@ def arms_near(
     whole = np.isfinite(designs).all(axis=1) & np.isfinite(costs)
     designs, costs = designs[whole], costs[whole]
     order = np.argsort(costs, kind="stable")
-    return _distinct(designs[order], costs[order])
+    designs, costs = designs[order], costs[order]
+    kept = unlike_all_before(np.abs(designs[:, None] - designs).max(axis=-1) >= _APART)
+    return NearArms(designs[kept], costs[kept])
 
 
 def _minimal_sets(count: int, needed: int, most: int, seed: int) -> NDArray[np.intp]:
     """Return which targets make up each set, shape (sets, needed): all sets, or some at random."""
     if comb(count, needed) <= most:
-        return np.array(list(islice(combinations(range(count), needed), most)), dtype=np.intp)
+        return np.array(list(combinations(range(count), needed)), dtype=np.intp)
     rng = np.random.default_rng([seed, needed])
     return np.array([rng.choice(count, needed, replace=False) for _ in range(most)], dtype=np.intp)
-
-
-def _distinct(designs: FloatArray, costs: FloatArray) -> NearArms:
-    """Return designs without those that are nearly one before them."""
-    apart = np.abs(designs[:, None] - designs).max(axis=-1) >= _APART
-    kept: list[int] = []
-    for index in range(len(designs)):
-        if apart[index, kept].all():
-            kept.append(index)
-    return NearArms(designs[kept], costs[kept])

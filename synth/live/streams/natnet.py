@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from synth.errors import SynthError
 from synth.live.streams import natnet_packets as natnet
-from synth.live.streams.stream import ASKED_EVERY, LOOK, PATIENCE, Seen, address_of
+from synth.live.streams.stream import ASKED_EVERY, LOOK, Seen, Stream
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -30,21 +30,10 @@ _METRE = 1000.0  # mm, what Motive sends unless it says something else
 _UNITS = 0.01, 1e5  # mm, between which an answer is one
 
 
-class MotiveStream:
-    """Motive at an address.
+class MotiveStream(Stream):
+    """Motive at an address; see `Stream`."""
 
-    Args:
-        address: Its host, and maybe the port where it is asked, 1510 unless told.
-        patience: Time without a frame after which it counts as lost, s.
-
-    Raises:
-        SynthError: The address is none.
-    """
-
-    def __init__(self, address: str, patience: float = PATIENCE) -> None:
-        self._server = address_of(address, _PORT)
-        self._patience = patience
-        self.name = f"Motive at {self._server[0]}:{self._server[1]}"
+    system, usual_port = "Motive", _PORT
 
     def frames(self) -> Generator[Seen | None]:
         """Yield frames as they come; see `Stream`."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
 from synth.errors import SynthError
-from synth.live.streams.stream import ASKED_EVERY, LOOK, PATIENCE, Bytes, Seen, address_of
+from synth.live.streams.stream import ASKED_EVERY, LOOK, Bytes, Seen, Stream
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
@@ -29,21 +29,10 @@ _CHUNK = 65536  # bytes
 _METRE = 1000.0  # mm
 
 
-class QtmStream:
-    """QTM at an address.
+class QtmStream(Stream):
+    """QTM at an address; see `Stream`."""
 
-    Args:
-        address: Its host, and maybe the port, 22223 unless told.
-        patience: Time without a frame after which it counts as lost, s.
-
-    Raises:
-        SynthError: The address is none.
-    """
-
-    def __init__(self, address: str, patience: float = PATIENCE) -> None:
-        self._server = address_of(address, _PORT)
-        self._patience = patience
-        self.name = f"QTM at {self._server[0]}:{self._server[1]}"
+    system, usual_port = "QTM", _PORT
 
     def frames(self) -> Generator[Seen | None]:
         """Yield frames as they come; see `Stream`."""

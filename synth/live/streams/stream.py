@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import struct
-from typing import TYPE_CHECKING, NamedTuple, Protocol, runtime_checkable
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 from synth.errors import SynthError
 
@@ -29,14 +30,29 @@ class Seen(NamedTuple):
     points: Mapping[str, Point]
 
 
-@runtime_checkable
-class Stream(Protocol):
-    """A tracking system that sends frames."""
+class Stream(ABC):
+    """A tracking system at an address, which sends frames.
 
-    @property
-    def name(self) -> str:
-        """What and where it is, for the mistakes."""
+    Args:
+        address: Its host, and maybe the port where it is asked, the system's usual one unless told.
+        patience: Time without a frame after which it counts as lost, s.
 
+    Attributes:
+        name: What and where it is, for the mistakes.
+
+    Raises:
+        SynthError: The address is none.
+    """
+
+    system: ClassVar[str]
+    usual_port: ClassVar[int]
+
+    def __init__(self, address: str, patience: float = PATIENCE) -> None:
+        self._server = address_of(address, self.usual_port)
+        self._patience = patience
+        self.name = f"{self.system} at {self._server[0]}:{self._server[1]}"
+
+    @abstractmethod
     def frames(self) -> Generator[Seen | None]:
         """Connect, and yield frames as they come, None in each tenth of a second in which none comes.
 

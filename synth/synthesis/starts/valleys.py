@@ -101,14 +101,14 @@ class Valleys:
         best = Refined.joined([fresh, led])
         return cls(task, watch, best, fresh.cost, len(fresh.cost), led.cost)
 
-    def joined(self, fresh: Refined) -> Valleys:
-        """Return what is known with more fresh shapes, refined."""
+    def joined(self, fresh: Refined, drawn: int | None = None) -> Valleys:
+        """Return what is known with more fresh shapes, refined: all drawn, or the best of so many."""
         fresh = weighed(self.task, fresh, self.watch)
         return replace(
             self,
             best=Refined.joined([self.best, fresh]),
             fresh=np.concatenate([self.fresh, fresh.cost]),
-            drawn=self.drawn + len(fresh.cost),
+            drawn=self.drawn + (drawn or len(fresh.cost)),
         )
 
     @property
@@ -175,25 +175,22 @@ class Valleys:
     def with_fresh(self, shapes: Shapes) -> Valleys:
         """Return what is known with some more fresh shapes, the worst of which are given up half-way."""
         refined = refine_the_best(self.task, shapes, _FRESH, _GO_ON, self.watch.is_up)
-        refined = weighed(self.task, refined, self.watch)
-        fresh = np.concatenate([self.fresh, refined.cost])
-        return replace(
-            self,
-            best=self.with_better(refined).best,
-            fresh=fresh,
-            drawn=self.drawn + len(shapes.length),
-        )
+        return self.joined(refined, len(shapes.length)).with_the_best_kept()
 
     def with_better(self, refined: Refined) -> Valleys:
-        """Return what is known with more shapes, of which the best are kept.
+        """Return what is known with more shapes, of which the best are kept."""
+        return replace(self, best=Refined.joined([self.best, refined])).with_the_best_kept()
 
-        Where the worst miss counts only a few of each valley are: the one that is lowest in the smooth norm
-        need not be so in the end.
+    def with_the_best_kept(self) -> Valleys:
+        """Return what is known with as many shapes as are worth going on from.
+
+        Where the worst miss counts these are only a few of each valley: the one that is lowest in the smooth
+        norm need not be so in the end.
         """
-        both = Refined.joined([self.best, refined])
+        best = self.best
         if self.task.objective is Objective.MINIMAX:
-            both = both.take(_some_of_each_kind(both, _OF_A_KIND))
-        return replace(self, best=both.best(_KEPT))
+            best = best.take(_some_of_each_kind(best, _OF_A_KIND))
+        return replace(self, best=best.best(_KEPT))
 
 
 def _bent(task: Task, parents: Refined, rng: np.random.Generator, watch: Watch) -> Refined:

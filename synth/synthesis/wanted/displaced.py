@@ -30,10 +30,6 @@ class Displacements:
         object.__setattr__(self, "shifts", frozen(self.shifts))
         object.__setattr__(self, "turns", frozen(self.turns))
 
-    def first(self, count: int) -> Displacements:
-        """Return the first so many."""
-        return Displacements(self.shifts[:count], self.turns[:count])
-
     def on(self, kinematics: Kinematics, ends: FloatArray) -> Kinematics:
         """Return the joints of shapes after each displacement, shape (N * k,), shape by shape.
 

@@ -70,14 +70,14 @@ class Forgiveness:
 
 
 @cache
-def _hand() -> Displacements:
-    """Return the errors that every shape is judged by: a fixed sample that fills its space evenly."""
+def _hand(errors: int) -> Displacements:
+    """Return so many errors, by which every shape is judged: a fixed sample that fills its space evenly."""
     # The additive recurrence of the root of g^7 = g + 1 (Roberts, 2018), in six dimensions.
     root = 1.0
     for _ in range(60):
         root = (1.0 + root) ** (1.0 / 7.0)
     steps = root ** -np.arange(1.0, 7.0)
-    uniform = (0.5 + np.arange(1.0, _ERRORS + 1.0)[:, None] * steps) % 1.0
+    uniform = (0.5 + np.arange(1.0, errors + 1.0)[:, None] * steps) % 1.0
     off, turned = (
         np.maximum([of.inv_cdf(float(u)) for u in column], 0.0)
         for of, column in ((_OFF, uniform[:, 0]), (_TURNED, uniform[:, 3]))
@@ -122,7 +122,7 @@ def misses_after_a_hand(
         theta2: Angles of joint 2 at which they meet the targets, shape (N, n), rad.
         errors: Over how many errors of a hand: fewer are less exact and sooner done.
     """
-    hand, count = _hand().first(errors), errors
+    hand, count = _hand(errors), errors
     together = max(1, _TOGETHER // (count * len(tolerances)))
     worst, within = np.empty(len(ends)), np.empty(len(ends))
     for first in range(0, len(ends), together):

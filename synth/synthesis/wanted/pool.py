@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.arrays import frozen_value
+from synth.arrays import frozen_value, unlike_all_before
 from synth.synthesis.shapes import Postures, Shapes, TargetsSeen, overlaps
 from synth.synthesis.wanted.forgiveness import misses_after_a_hand
 from synth.synthesis.wanted.margins import Margins
@@ -110,12 +110,7 @@ class Pool:
     def distinct(self) -> NDArray[np.intp]:
         """Return which shapes differ from all that are wanted more."""
         poses = self.shapes.poses
-        apart = np.linalg.norm(poses[:, None] - poses, axis=-1) >= _DISTINCT
-        kept: list[int] = []
-        for index in range(len(poses)):
-            if apart[index, kept].all():
-                kept.append(index)
-        return np.array(kept, dtype=np.intp)
+        return unlike_all_before(np.linalg.norm(poses[:, None] - poses, axis=-1) >= _DISTINCT)
 
 
 def swings_of(joints: FloatArray) -> FloatArray:

@@ -146,7 +146,8 @@ def _bred(
     stop: Callable[[], bool],
 ) -> Pool:
     """Return the shapes that are wanted most of some random ones and of what bending makes of them."""
-    beginnings = _promising(narrow, led, rng)
+    arms = arms_through_all(narrow)
+    beginnings = _promising(narrow, arms, led, rng)
     if known:
         shapes = Shapes(narrow.robot, Shapes.joined([Shapes.of(arm) for arm in known]).unknowns)
         beginnings = Shapes.joined([beginnings, _varied(shapes, _FROM_KNOWN, rng)])
@@ -161,7 +162,7 @@ def _bred(
     pool = Pool.of(task, narrow, refined.shapes, stop)
     # Where targets are met exactly and fix finitely many surfaces, bending changes nothing that counts more
     # than the bend itself.
-    finite = _is_tight(task) and len(arms_through_all(narrow)) > 0
+    finite = _is_tight(task) and len(arms) > 0
     gained = [np.full(_COUNTS, np.inf)]
     for _ in range(0 if finite else _ROUNDS):
         if stop() or not len(pool.table):
@@ -175,8 +176,8 @@ def _bred(
     return pool
 
 
-def _promising(task: Task, led: int, rng: np.random.Generator) -> Shapes:
-    """Return random shapes that pass the targets nearly, and some near exact designs."""
+def _promising(task: Task, arms: FloatArray, led: int, rng: np.random.Generator) -> Shapes:
+    """Return random shapes that pass the targets nearly, and some near arms through all of them."""
     random = _random_shapes(task.robot)
     shapes, misses = random.shapes, np.minimum(estimated_misses(task, random), _FAR)
     order = np.argsort(relative_weights(task) @ misses**2, kind="stable")
@@ -184,7 +185,7 @@ def _promising(task: Task, led: int, rng: np.random.Generator) -> Shapes:
     postures = Postures.nearest(TargetsSeen.of(task), shapes.take(good).kinematics)
     calm = good[np.argsort(swings_of(postures.joints).max(axis=1, initial=0.0), kind="stable")]
     chosen = np.union1d(order[: led - _LED // 2], calm[: _LED // 2])
-    return shapes.take(np.union1d(chosen, random.nearest_to_arms(arms_through_all(task), _PER_ARM)))
+    return shapes.take(np.union1d(chosen, random.nearest_to_arms(arms, _PER_ARM)))
 
 
 @lru_cache(maxsize=4)
