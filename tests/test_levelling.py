@@ -4,8 +4,11 @@ import itertools
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from planted import ROBOT, noisy, planted_task
+from planted_surfaces import as_points
 
+from synth.synthesis import solve
 from synth.synthesis.shapes import Postures, TargetsSeen
 from synth.synthesis.shapes.shapes import Shapes, in_equal_arcs, into_limits
 from synth.synthesis.starts.descent import _curvature_of_norm
@@ -65,3 +68,30 @@ def test_where_all_targets_are_met_the_worst_miss_has_no_slope_and_warns_of_noth
     task = replace(task, targets=tuple(PointTarget(f"t{i}", point) for i, point in enumerate(exact)))
     refined = level(task, refine(task, met.shapes))
     assert refined.cost[0] < 1e-18
+
+
+@pytest.mark.parametrize(("seed", "weighted"), [(0, False), (7, False), (13, True)])
+def test_what_the_least_squares_just_break_is_met_where_a_shape_is_within_all_tolerances(seed, weighted):
+    """The least sum of squares misses one target by up to a fifth more than the planted arm misses any."""
+    rng = np.random.default_rng([seed, 77])
+    count = int(rng.integers(6, 31))
+    task, planted = planted_task(seed, count)
+    points = task.table.positions + rng.normal(0.0, 2e-3, (count, 3))
+    weights = rng.uniform(0.2, 5.0, count) if weighted else np.ones(count)
+    tolerance = 1.02 * float(planted.closest_joints(points)[1].max())
+    targets = tuple(
+        replace(target, position=point, tolerance=tolerance, weight=float(weight))
+        for target, point, weight in zip(task.targets, points, weights, strict=True)
+    )
+    solution = solve(replace(task, targets=targets))
+    assert solution.found
+    assert solution.best.arm.closest_joints(points)[1].max() <= tolerance
+
+
+def test_of_many_targets_each_is_met_where_a_shape_is_within_all_tolerances():
+    task, planted, _ = as_points(96, noise=2e-3)
+    points = task.table.positions
+    tolerance = 1.1 * float(planted.closest_joints(points)[1].max())
+    solution = solve(as_points(96, noise=2e-3, tolerance=tolerance)[0])
+    assert solution.found
+    assert solution.best.arm.closest_joints(points)[1].max() <= tolerance

@@ -9,8 +9,7 @@ import numpy as np
 
 from synth.robot import Interval, JointLimits
 from synth.synthesis.check import proven_between, verify_targets
-from synth.synthesis.many_targets import least_worst, ranked
-from synth.synthesis.search import led_to
+from synth.synthesis.many_targets import least_worst, led_to, ranked, within_tolerances
 from synth.synthesis.starts import best_covering, random_part, refined_for_all
 from synth.synthesis.wanted import Design, best_of
 from synth.task import Objective
@@ -117,8 +116,9 @@ def for_all_targets(task: Task, designs: Sequence[Design], seed: int, watch: Wat
             arm = (
                 best_covering(task, found, watch) if task.is_partial else refined_for_all(task, found, watch)
             )
-            if not task.is_partial and task.objective is Objective.MINIMAX:
-                arm = least_worst(task, arm, watch)
+            if not task.is_partial:
+                lead = least_worst if task.objective is Objective.MINIMAX else within_tolerances
+                arm = lead(task, arm, watch)
         watch.tell(phase="verifying with all targets")
         with watch.on("verifying"):
             seen, design = verified_in_time(task, arm, watch)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from synth.synthesis.search import Search
 from synth.synthesis.shapes import Shapes
 from synth.synthesis.starts import (
     SAMPLE,
@@ -25,19 +26,24 @@ from synth.synthesis.starts import (
     relative_misses,
     thinned,
 )
-from synth.task import Objective
+from synth.synthesis.wanted import best_of
+from synth.task import Objective, PointTarget, TargetTable
 from synth.watch import Watch
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from synth.arrays import FloatArray
     from synth.robot import Arm
+    from synth.synthesis.wanted import Design
     from synth.task import Task
 
 # That the nonlinear program knows all at once.
 _MOST_TARGETS = {Objective.LEAST_SQUARES: 100, Objective.MINIMAX: 40}
 _PART = 40  # of more targets, those that it knows at first
 _LEVELLINGS = 3
+_ON_THE_WAY = (0.25, 0.5, 0.75, 1.0)  # from the least sum of squares to the least worst miss
+_BETWEEN, _STARTS_BETWEEN = 20, 6  # points that join the targets of a search; starts polished then
 
 
 def part_of(task: Task, seed: int, watch: Watch | None = None) -> Task:
@@ -124,7 +130,7 @@ def least_worst(task: Task, arm: Arm, watch: Watch) -> Arm:
         watch.tell(phase="levelling the misses")
         worst = task.table.take(np.sort(np.argsort(-least, kind="stable")[:SAMPLE]))
         joints, _misses = arm.closest_joints(worst.positions)
-        some = replace(task, targets=worst, objective=Objective.MINIMAX)
+        some = replace(task, targets=worst)
         start = Refined(Shapes.of(arm), joints[None], np.zeros(1))
         lower = level(some, start, watch.is_up).shapes.arm(0, task.base)
         misses = relative_misses(task, lower)
@@ -132,3 +138,58 @@ def least_worst(task: Task, arm: Arm, watch: Watch) -> Arm:
             break
         arm, least = lower, misses
     return arm
+
+
+def within_tolerances(task: Task, arm: Arm, watch: Watch) -> Arm:
+    """Return an arm nearby that misses no target by more than its tolerance, or else the arm itself.
+
+    Args:
+        task: The task with all its targets.
+        arm: The robot in the shape of the least sum of squares, of equal arcs.
+        watch: As for `least_worst`.
+    """
+    if np.mean(relative_misses(task, arm) ** 2) > np.mean(task.weights):  # as for `may_be_met`
+        return arm
+    by_worst = task.by_worst_miss
+    if relative_misses(by_worst, arm).max() <= 1.0:
+        return arm
+    levelled = least_worst(by_worst, arm, watch)
+    squares, worst = Shapes.of(arm), Shapes.of(levelled)
+    for share in _ON_THE_WAY:
+        unknowns = squares.unknowns + share * (worst.unknowns - squares.unknowns)
+        between = replace(squares, unknowns=unknowns).arm(0, task.base)
+        if watch.is_up() or relative_misses(by_worst, between).max() <= 1.0:
+            return between
+    return arm
+
+
+def led_to(
+    part: Task, designs: Sequence[Design], points: FloatArray, seed: int, watch: Watch
+) -> tuple[Task, list[Design]]:
+    """Return the part with points that shapes miss, or of which nothing is proven, and shapes led there, too.
+
+    Mostly a shape that covers all samples ends short of a surface's edge: there joint 1 has its dead zone.
+    Without points other shapes are looked for.
+
+    Args:
+        part: The task of few targets that the shapes were found for.
+        designs: The shapes.
+        points: The points in the task frame, shape (k, 3), m: of very many, some.
+        seed: Seed of the random shapes.
+        watch: Its time.
+    """
+    if not len(points):
+        search = Search(part, seed + 1, watch, lambda: False)
+        search.run(_STARTS_BETWEEN)
+        return part, list(best_of(part, search.polishing.designs, watch.is_up))
+    some = points[np.random.default_rng([seed, 15]).permutation(len(points))[:_BETWEEN]]
+    first = len(part.targets)
+    more = [
+        PointTarget(f"between the samples {first + number}", point, float(part.tolerances.min()))
+        for number, point in enumerate(some, start=1)
+    ]
+    task = part.asking_for(part.table.followed_by(TargetTable.of(more)))
+    search = Search(task, seed, watch, lambda: False, alternatives=0)
+    if not search.follow(designs):
+        search.run(_STARTS_BETWEEN)
+    return task, list(best_of(task, search.polishing.designs, watch.is_up))

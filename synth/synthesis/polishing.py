@@ -58,6 +58,11 @@ class Polishing:
         """The same, with the same lists, by the sum of the squares of the misses instead of the worst one."""
         return replace(self, task=replace(self.task, objective=Objective.LEAST_SQUARES))
 
+    @property
+    def by_worst(self) -> Polishing:
+        """The same by the worst of the misses over their tolerances."""
+        return replace(self, task=self.task.by_worst_miss)
+
     def polish(self, start: Start, *, near: bool = False) -> None:
         """Solve from one start; where something is in the way, take the planes before it anew.
 

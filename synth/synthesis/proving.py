@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import threading
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -16,7 +16,6 @@ from synth.synthesis.bound import Bound, prove
 from synth.synthesis.nlp import Structure, shared_nlp
 from synth.synthesis.shapes import ARCS
 from synth.synthesis.starts import start_points
-from synth.task import Objective
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -60,9 +59,7 @@ class Certifier:
     _minimax: Task = field(init=False)
 
     def __post_init__(self) -> None:
-        table = self.task.table
-        equal = replace(table, weights=np.ones(len(table)))
-        self._minimax = replace(self.task, objective=Objective.MINIMAX, targets=equal)
+        self._minimax = self.task.by_worst_miss
         self._rng = np.random.default_rng(self.seed)
 
     def certificate(self) -> Bound | None:

@@ -6,18 +6,23 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from synth.synthesis.polishing import Polishing
 from synth.synthesis.shapes import in_equal_arcs
 from synth.synthesis.starts import Start, start_points
-from synth.synthesis.wanted import Design, best_of, has_all_ways, leaves_no_wish, objective, wished
-from synth.task import Objective, PointTarget, TargetTable
+from synth.synthesis.wanted import (
+    Design,
+    has_all_ways,
+    leaves_no_wish,
+    may_be_met,
+    objective,
+    wished,
+)
+from synth.task import Objective
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from synth.arrays import FloatArray
+    from synth.synthesis.wanted import Design
     from synth.task import Task
     from synth.watch import Watch
 
@@ -30,7 +35,6 @@ _MORE = 2  # than the alternatives, with all ways, of which none need leave noth
 _ALTERNATIVES_THAT_MISS = 2  # likewise, at most, where no shape meets all targets
 _NEXT_TO_NOTHING = 0.02  # of the tightest tolerance: a start that misses no more is not polished
 _GAIN = 1e-3  # of the objective: the least that is worth another start
-_BETWEEN, _STARTS_BETWEEN = 20, 6  # points that join the targets of a search; starts polished then
 _LATE = 0.2  # s after the time is up, from when on not even unpolished starts are looked at
 
 
@@ -85,6 +89,31 @@ class Search:
 
     def run(self, most: int | None = None) -> None:
         """Polish start points until enough is found, or the time is up; if `most`, quick ones, so many."""
+        self._run(most)
+        if self._may_be_met(self.polishing.designs) and not self._watch.is_up():
+            search = self._by_worst()
+            search.run(most)
+            self.starts += search.starts
+
+    def _by_worst(self) -> Search:
+        """Return a search for the least worst miss over its tolerance, which keeps its shapes with these."""
+        polishing = self.polishing.by_worst
+        search = Search(
+            polishing.task,
+            self._seed,
+            self._watch,
+            self._is_impossible,
+            self._alternatives,
+            sees_all=self._sees_all,
+        )
+        search.polishing = polishing
+        return search
+
+    def _may_be_met(self, designs: Sequence[Design]) -> bool:
+        """Whether a target is missed that may be reached if others are missed by more."""
+        return not self.polishing.found and not self._task.is_partial and may_be_met(self._task, designs)
+
+    def _run(self, most: int | None) -> None:
         usual = _STARTS_WHEN_IMPOSSIBLE if self._is_impossible() else _STARTS_AT_MOST
         at_most = self.starts + (most or usual)
         no_better = 0
@@ -124,8 +153,15 @@ class Search:
                 self.polishing.by_squares.polish(start, near=True)
             if not self.polishing.found:  # a start that is an answer is better than what polishing made of it
                 self.polishing.keep(start.arm, start.joints)
+        self._level()
         self.starts += 1
         self._since_found += self.polishing.found
+
+    def _level(self) -> None:
+        """Polish the worst miss of the last shape, if a target is missed that may be reached."""
+        last = self.polishing.designs[-1:]
+        if self._may_be_met(last):
+            self.polishing.by_worst.polish(Start(last[0].arm, last[0].verification.joints), near=True)
 
     def _wished_for(self) -> bool:
         """Look for shapes that a person would rather have than the first one; whether there are any."""
@@ -200,35 +236,3 @@ def _progress(polishing: Polishing, starts: int, at_most: int) -> dict[str, obje
         "found": polishing.found,
         "phase": "polishing shapes",
     }
-
-
-def led_to(
-    part: Task, designs: Sequence[Design], points: FloatArray, seed: int, watch: Watch
-) -> tuple[Task, list[Design]]:
-    """Return the part with points that shapes miss, or of which nothing is proven, and shapes led there, too.
-
-    Mostly a shape that covers all samples ends short of a surface's edge: there joint 1 has its dead zone.
-    Without points other shapes are looked for.
-
-    Args:
-        part: The task of few targets that the shapes were found for.
-        designs: The shapes.
-        points: The points in the task frame, shape (k, 3), m: of very many, some.
-        seed: Seed of the random shapes.
-        watch: Its time.
-    """
-    if not len(points):
-        search = Search(part, seed + 1, watch, lambda: False)
-        search.run(_STARTS_BETWEEN)
-        return part, list(best_of(part, search.polishing.designs, watch.is_up))
-    some = points[np.random.default_rng([seed, 15]).permutation(len(points))[:_BETWEEN]]
-    first = len(part.targets)
-    more = [
-        PointTarget(f"between the samples {first + number}", point, float(part.tolerances.min()))
-        for number, point in enumerate(some, start=1)
-    ]
-    task = part.asking_for(part.table.followed_by(TargetTable.of(more)))
-    search = Search(task, seed, watch, lambda: False, alternatives=0)
-    if not search.follow(designs):
-        search.run(_STARTS_BETWEEN)
-    return task, list(best_of(task, search.polishing.designs, watch.is_up))

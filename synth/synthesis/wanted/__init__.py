@@ -7,7 +7,14 @@ from synth.synthesis.wanted.forgiveness import Forgiveness
 from synth.synthesis.wanted.judging import judged, ways_and_forgiveness
 from synth.synthesis.wanted.margins import Margins
 from synth.synthesis.wanted.motion import Motion
-from synth.synthesis.wanted.ranking import best_of, has_all_ways, leaves_no_wish, objective, preferred_designs
+from synth.synthesis.wanted.ranking import (
+    best_of,
+    has_all_ways,
+    leaves_no_wish,
+    may_be_met,
+    objective,
+    preferred_designs,
+)
 from synth.synthesis.wanted.wanted_shapes import wished
 from synth.synthesis.wanted.ways import MOST_MOTIONS, motions
 
@@ -24,6 +31,7 @@ __all__ = [
     "has_all_ways",
     "judged",
     "leaves_no_wish",
+    "may_be_met",
     "motions",
     "objective",
     "preferred_designs",

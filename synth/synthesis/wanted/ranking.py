@@ -143,6 +143,21 @@ def objective(task: Task, design: Design) -> float:
     return float(weighted.max() if task.objective is Objective.MINIMAX else weighted.sum())
 
 
+def may_be_met(task: Task, designs: Sequence[Design]) -> bool:
+    """Whether some shape may reach every target, as far as the least of the objective says.
+
+    A shape that does has an objective of no more than that of misses which are all as large as their
+    tolerances: so the objective's least must be, too.
+
+    Args:
+        task: The task.
+        designs: Shapes, one of which has about the least objective there is.
+    """
+    weights = task.weights
+    allowed = float(weights.max() if task.objective is Objective.MINIMAX else weights.sum())
+    return min((objective(task, design) for design in designs), default=math.inf) <= allowed
+
+
 def best_of(task: Task, designs: Sequence[Design], is_up: Callable[[], bool] = never) -> tuple[Design, ...]:
     """Return the best designs in order, judged; each differs from those before by more than a hand can tell.
 

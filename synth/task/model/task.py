@@ -160,6 +160,12 @@ class Task(Standing):
         """Whether a part of a surface may be left uncovered."""
         return any(surface.coverage < 1.0 for surface in self.surfaces)
 
+    @property
+    def by_worst_miss(self) -> Task:
+        """The same task, judged by the worst miss over its tolerance whatever the weights: are all met?"""
+        equal = replace(self.table, weights=np.ones(len(self.table)))
+        return replace(self, objective=Objective.MINIMAX, targets=equal)
+
     def asking_for(self, targets: Sequence[PointTarget]) -> Task:
         """Return the same task with other targets, none of which is a sample of anything."""
         table = replace(TargetTable.of(targets), samples=None)
