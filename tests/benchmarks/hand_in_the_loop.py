@@ -34,7 +34,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from planted import ROBOT, planted_task
 
-from synth.guide.loop.checking import Verdict, best_joints, check_arm
+from synth.guide.loop.checking import CONFIDENCE, Verdict, best_joints, check_arm
 from synth.guide.loop.settings import best_settings, with_settings
 from synth.measurement import (
     MARKER_ERROR,
@@ -116,7 +116,7 @@ class Trial:
     set_worst: float = 0.0
 
 
-def trial(guide, task, designs, operator, markers, calibrated, corrections):
+def trial(guide, task, designs, operator, markers, calibrated, corrections, confidence):
     planned = designs[0].verification.joints
     wanted = StandingArm.of(designs[0].arm, ROBOT.joint_limits.base.middle)
     arm = operator.placed(wanted)
@@ -130,7 +130,8 @@ def trial(guide, task, designs, operator, markers, calibrated, corrections):
     elif guide != "a":
         while True:
             fit = operator.measured(arm, wanted, markers, calibrated)
-            check = check_arm(task, designs, fit, corrections=corrections - made)
+            left = corrections - made
+            check = check_arm(task, designs, fit, corrections=left, confidence=confidence)
             locked, told = check.verdict is Verdict.LOCK, check.probability
             if check.verdict is not Verdict.CORRECT:
                 break
@@ -153,7 +154,7 @@ def trial(guide, task, designs, operator, markers, calibrated, corrections):
 
 def of_task(arguments):
     """Return the trials of all operators on one task, by guide."""
-    seed, count, operators, marker_set, corrections, guides = arguments
+    seed, count, operators, marker_set, corrections, confidence, guides = arguments
     task, _ = planted_task(seed, count)
     task = replace(task, targets=tuple(replace(each, tolerance=TOLERANCE) for each in task.targets))
     solution = solve(task)
@@ -172,6 +173,7 @@ def of_task(arguments):
                 markers,
                 calibrated,
                 corrections,
+                confidence,
             )
             for k in range(operators)
         ]
@@ -202,6 +204,7 @@ def main() -> None:
     parser.add_argument("--targets", default="3,4,5,6", help="numbers of targets, in turn")
     parser.add_argument("--markers", choices=list(MARKERS), default="bars")
     parser.add_argument("--corrections", type=int, default=3)
+    parser.add_argument("--confidence", type=float, default=CONFIDENCE, help="from which on `check` locks")
     parser.add_argument("--first-seed", type=int, default=7000)
     parser.add_argument("--guides", default=",".join(GUIDES))
     parser.add_argument("--processes", type=int, default=2)
@@ -215,6 +218,7 @@ def main() -> None:
             arguments.operators,
             arguments.markers,
             arguments.corrections,
+            arguments.confidence,
             guides,
         )
         for k in range(arguments.tasks)
