@@ -11,7 +11,7 @@ from synth.robot import Interval, JointLimits
 from synth.synthesis.check import proven_between, verify_targets
 from synth.synthesis.many_targets import least_worst, led_to, ranked, within_tolerances
 from synth.synthesis.starts import best_covering, random_part, refined_for_all
-from synth.synthesis.wanted import Design, best_of
+from synth.synthesis.wanted import Design, best_of, may_be_met
 from synth.task import Objective
 
 if TYPE_CHECKING:
@@ -113,12 +113,14 @@ def for_all_targets(task: Task, designs: Sequence[Design], seed: int, watch: Wat
         if verified and watch.is_up():
             break
         with watch.on("solving"):
-            arm = (
-                best_covering(task, found, watch) if task.is_partial else refined_for_all(task, found, watch)
-            )
-            if not task.is_partial:
-                lead = least_worst if task.objective is Objective.MINIMAX else within_tolerances
-                arm = lead(task, arm, watch)
+            if task.is_partial:
+                arm = best_covering(task, found, watch)
+            else:
+                arm = refined_for_all(task, found, watch)
+                if task.objective is Objective.MINIMAX:
+                    arm = least_worst(task, arm, watch)
+                else:
+                    arm = within_tolerances(task, arm, found, watch)
         watch.tell(phase="verifying with all targets")
         with watch.on("verifying"):
             seen, design = verified_in_time(task, arm, watch)
@@ -153,7 +155,9 @@ def led_to_missed(part: Task, whole: WholeTask, seed: int, watch: Watch) -> Whol
             break
         check = best.designs[0].verification
         missed = ~np.array(check.within_tolerance)
-        if check.found or np.mean(missed) > _A_FEW or not _limits_keep(best.designs[0].arm, task, missed):
+        if check.found or np.mean(missed) > _A_FEW:
+            break
+        if not (may_be_met(task, best.designs) or _limits_keep(best.designs[0].arm, task, missed)):
             break
         with watch.on("solving"):
             part, beside = led_to(part, best.designs, task.table.positions[missed], seed + number, watch)

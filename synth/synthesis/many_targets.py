@@ -140,12 +140,13 @@ def least_worst(task: Task, arm: Arm, watch: Watch) -> Arm:
     return arm
 
 
-def within_tolerances(task: Task, arm: Arm, watch: Watch) -> Arm:
+def within_tolerances(task: Task, arm: Arm, before: Arm, watch: Watch) -> Arm:
     """Return an arm nearby that misses no target by more than its tolerance, or else the arm itself.
 
     Args:
         task: The task with all its targets.
         arm: The robot in the shape of the least sum of squares, of equal arcs.
+        before: The same as it was found for a part of the targets: maybe in another valley of the worst miss.
         watch: As for `least_worst`.
     """
     if np.mean(relative_misses(task, arm) ** 2) > np.mean(task.weights):  # as for `may_be_met`
@@ -153,13 +154,16 @@ def within_tolerances(task: Task, arm: Arm, watch: Watch) -> Arm:
     by_worst = task.by_worst_miss
     if relative_misses(by_worst, arm).max() <= 1.0:
         return arm
-    levelled = least_worst(by_worst, arm, watch)
-    squares, worst = Shapes.of(arm), Shapes.of(levelled)
-    for share in _ON_THE_WAY:
-        unknowns = squares.unknowns + share * (worst.unknowns - squares.unknowns)
-        between = replace(squares, unknowns=unknowns).arm(0, task.base)
-        if watch.is_up() or relative_misses(by_worst, between).max() <= 1.0:
-            return between
+    squares = Shapes.of(arm)
+    for start in (arm, before):
+        worst = Shapes.of(least_worst(by_worst, start, watch))
+        for share in _ON_THE_WAY:
+            unknowns = squares.unknowns + share * (worst.unknowns - squares.unknowns)
+            between = replace(squares, unknowns=unknowns).arm(0, task.base)
+            if relative_misses(by_worst, between).max() <= 1.0:
+                return between
+            if watch.is_up():
+                return arm
     return arm
 
 
