@@ -25,6 +25,7 @@ _MARGIN = 2e-4  # the peers keep this far above the floor, m: their penalty give
 PENALTY = 10.0
 _PIECES = 8  # of each arc, and the column of the base as two more: where clearances are looked at
 TUBE = ARCS * _PIECES + 3
+TUBE_RADIUS = 14  # its place among the constants
 _BETWEEN = 2.5e-3  # more than clearances may be less between these points, m
 
 
@@ -137,7 +138,7 @@ def rod_depth(pose, k, tube, theta2):
     x, y, z = point(pose, k, 0.0, theta2)
     rx, ry, rz = x - end[0], y - end[1], z - end[2]
     length = math.sqrt(rx * rx + ry * ry + rz * rz)
-    from_joint = 2.0 * k[14]  # within a diameter of the second joint link and rod are the joint
+    from_joint = 2.0 * k[TUBE_RADIUS]  # within a diameter of the second joint link and rod are the joint
     nearest = np.inf
     for i in range(TUBE):
         if tube[i, 3] <= end[3] - from_joint:

@@ -16,7 +16,6 @@ import argparse
 import math
 import sys
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -26,7 +25,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import compiled_miss
-from compiled_link import constants
+from compiled_link import TUBE_RADIUS, constants
 from noisy import known, remember
 from peer_bounds import bounds_table
 from peer_methods import METHODS, NOT_AN_ARM, first_shape
@@ -60,12 +59,12 @@ def task_of(kind: int, seed: int) -> Task:
 def model_difference(task: Task, count: int = 20) -> float:
     """Return by how much the compiled misses of random shapes differ from those of `synth`, m.
 
-    The links are as thin as a thread here: how thick ones keep clear, the independent check judges.
+    The links are in nothing's way here: how thick ones keep clear, the independent check judges.
     """
     shapes = Shapes.sample(task.robot, count, np.random.default_rng(0))
-    thread = replace(task.robot, link=replace(task.robot.link, diameter=-1.0))
     targets = np.ascontiguousarray(task.positions_in_base)
-    known_to_them = constants(replace(task, robot=thread))
+    known_to_them = constants(task)
+    known_to_them[TUBE_RADIUS] = -0.5
     return max(
         np.abs(
             compiled_miss.misses(np.array(shapes.unknowns[i]), known_to_them, targets)
