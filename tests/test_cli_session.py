@@ -57,7 +57,7 @@ def test_what_nobody_foresaw_is_one_sentence_and_exit_3(tmp_path, function, keep
 
 def test_what_was_found_before_the_search_broke_off_is_kept(tmp_path):
     before = (
-        "import synth.synthesis.polishing as module\n"
+        "import synth.synthesis.searching.polishing as module\n"
         "keep, calls = module.Polishing.keep, []\n"
         "def once(self, *arguments):\n"
         "    if calls: raise MemoryError\n"

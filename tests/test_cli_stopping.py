@@ -36,7 +36,7 @@ def test_a_time_limit_keeps_the_best_so_far(tmp_path):
     file.write_text(noisy_content(12))
     # The time is up as soon as one start point is polished, on a fast machine and on a slow one.
     late = (
-        "from synth.synthesis.search import Search\n"
+        "from synth.synthesis.searching import Search\n"
         "original = Search.polish\n"
         "def polished(self, start):\n"
         "    original(self, start)\n"
@@ -139,7 +139,7 @@ def test_a_second_wish_ends_at_once_and_keeps_what_is_written_whole(tmp_path):
 @pytest.mark.skipif(os.name == "nt", reason="Windows sends no such signal to one process")
 def test_a_second_wish_ends_the_search_at_once():
     before = SIGNAL.format(signal="SIGINT") + (
-        "import synth.synthesis.search as module\n"
+        "import synth.synthesis.searching.search as module\n"
         "def twice(*_):\n"
         "    press()\n"
         "    press()\n"

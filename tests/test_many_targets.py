@@ -7,7 +7,7 @@ import pytest
 from planted import planted_task, scanned
 
 from synth.synthesis import solve, verify
-from synth.synthesis.many_targets import part_of
+from synth.synthesis.whole import part_of
 from synth.task import Objective, PointTarget, TargetTable, Task
 
 

@@ -9,7 +9,7 @@ from planted import ROBOT, feasible, nearly_special_task, planted_task
 from solved import independent_misses, noisy, points
 
 from synth.synthesis import Status, solve, verify
-from synth.synthesis.polishing import Polishing
+from synth.synthesis.searching import Polishing
 from synth.synthesis.solution.message import message
 from synth.synthesis.wanted.design import Design
 from synth.synthesis.wanted.judging import judged

@@ -40,8 +40,28 @@ ROOMS = {
         "synthesis.bound",
         "synthesis.check",
         "synthesis.nlp",
+        "synthesis.searching",
         "synthesis.shapes",
         "synthesis.solution",
+        "synthesis.starts",
+        "synthesis.wanted",
+        "synthesis.whole",
+        "task",
+    },
+    "synthesis.whole": {
+        "robot",
+        "synthesis.check",
+        "synthesis.searching",
+        "synthesis.shapes",
+        "synthesis.starts",
+        "synthesis.wanted",
+        "task",
+    },
+    "synthesis.searching": {
+        "robot",
+        "synthesis.check",
+        "synthesis.nlp",
+        "synthesis.shapes",
         "synthesis.starts",
         "synthesis.wanted",
         "task",
@@ -199,7 +219,7 @@ def test_circles_and_ways_past_doors_are_seen():
     assert door_into("synthesis.shapes.shapes", "guide") == "synthesis"
     assert door_into("synthesis.shapes.shapes", "synthesis") == "synthesis.shapes"
     assert door_into("synthesis.shapes.shapes", "synthesis.nlp") == "synthesis.shapes"
-    assert door_into("synthesis.search", "synthesis.starts") is None
+    assert door_into("synthesis.run", "synthesis.starts") is None
     assert door_into("errors", "synthesis.starts") is None
 
 

@@ -7,12 +7,12 @@ import pytest
 from planted import ROBOT, noisy, planted_task, scanned
 from sampled_shapes import noisy_task
 
-from synth.synthesis import Status, all_targets, solve
-from synth.synthesis.all_targets import verified_in_time
+from synth.synthesis import Status, solve
 from synth.synthesis.check import verify_targets
 from synth.synthesis.run import Run
 from synth.synthesis.shapes.shapes import Shapes
 from synth.synthesis.starts.refinement import refine
+from synth.synthesis.whole import for_all, verified_in_time
 from synth.watch import Watch
 
 
@@ -180,7 +180,7 @@ def seconds_each(monkeypatch):
         clock.now += len(task.targets)
         return verify_targets(task, arm)
 
-    monkeypatch.setattr(all_targets, "verify_targets", slow)
+    monkeypatch.setattr(for_all, "verify_targets", slow)
     return clock
 
 
@@ -215,7 +215,7 @@ def test_a_shape_seen_with_some_targets_is_told_as_that(seconds_each):
 
 
 def task_part(task):
-    return all_targets.random_part(task, 40, 0)
+    return for_all.random_part(task, 40, 0)
 
 
 def test_no_step_of_a_refinement_is_taken_after_the_time():

@@ -15,7 +15,7 @@ from synth.synthesis.check import (
     what_counts,
     worst_targets,
 )
-from synth.synthesis.search import ALTERNATIVES
+from synth.synthesis.searching import ALTERNATIVES
 from synth.synthesis.shapes import TargetsSeen
 from synth.synthesis.solution import (
     NotFoundError,

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.synthesis.many_targets import part_of, without_partial
 from synth.synthesis.run import Run
 from synth.synthesis.starts import Start, start_points
 from synth.synthesis.wanted import best_of, objective, preferred_designs
+from synth.synthesis.whole import part_of, without_partial
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

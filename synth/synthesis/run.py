@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.errors import in_a_line
-from synth.synthesis.all_targets import WholeTask, looked_through, only_proven, verified_in_time
 from synth.synthesis.bound import Bound, why_impossible
-from synth.synthesis.many_targets import without_partial
 from synth.synthesis.present_shape import changing_little
-from synth.synthesis.search import ALTERNATIVES, Search
+from synth.synthesis.searching import ALTERNATIVES, Search
 from synth.synthesis.solution import Solution, Status, message, note_on_ways, why_no_better
 from synth.synthesis.wanted import Design, best_of
+from synth.synthesis.whole import WholeTask, looked_through, only_proven, verified_in_time, without_partial
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

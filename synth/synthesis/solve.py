@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 from synth.synthesis.arguments import checked_task
 from synth.synthesis.choosing import chosen, leaves_a_choice
-from synth.synthesis.many_targets import part_of
 from synth.synthesis.proving import prove_run
 from synth.synthesis.run import Run
-from synth.synthesis.search import ALTERNATIVES
+from synth.synthesis.searching import ALTERNATIVES
+from synth.synthesis.whole import part_of
 from synth.watch import Watch
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from synth.synthesis.polishing import Polishing
+from synth.synthesis.searching.polishing import Polishing
 from synth.synthesis.shapes import in_equal_arcs
 from synth.synthesis.starts import Start, start_points
 from synth.synthesis.wanted import (
