@@ -17,7 +17,7 @@ from synth.synthesis.starts import (
     refined_for_all,
     relative_misses,
 )
-from synth.synthesis.wanted import Design, best_of
+from synth.synthesis.wanted import Design, best_of, may_be_met
 from synth.synthesis.whole.levelling import least_worst, within_tolerances
 from synth.task import Objective
 
@@ -93,6 +93,8 @@ def for_all_targets(task: Task, designs: Sequence[Design], seed: int, watch: Wat
             # The steps know neither floor nor obstacles.
             if not design.verification.possible and arm is not found:
                 seen, design = verified_in_time(task, found, watch)
+        if not any(each.verification.found for each in verified):
+            design = _met(task, design, found, watch)
         unseen = design.verification.unseen
         if not design.verification.possible:
             whole.blocked.append(design)
@@ -109,10 +111,24 @@ def _improved(task: Task, found: Arm, watch: Watch) -> Arm:
         return best_covering(task, found, watch)
     squares = refined_for_all(task, found, watch)
     if task.objective is Objective.LEAST_SQUARES:
-        return within_tolerances(task, squares, found, watch)
+        return squares
     # They may be in different valleys of the worst miss.
     levelled = [least_worst(task, each, watch) for each in (found, squares)]
     return min(levelled, key=lambda each: float(relative_misses(task, each).max()))
+
+
+def _met(task: Task, design: Design, found: Arm, watch: Watch) -> Design:
+    """Return a design that meets all targets, if it does not and one like it may; else the design itself."""
+    check = design.verification
+    if task.is_partial or check.unseen or check.found or watch.is_up() or not may_be_met(task, [design]):
+        return design
+    with watch.on("solving"):
+        arm = within_tolerances(task, design.arm, found, watch)
+    if arm is design.arm:
+        return design
+    with watch.on("verifying"):
+        met = Design(arm, verify_targets(task, arm))
+    return met if met.verification.found else design
 
 
 def ranked(task: Task, arms: Sequence[Arm], seed: int, watch: Watch) -> list[Arm]:

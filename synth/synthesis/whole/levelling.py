@@ -62,12 +62,7 @@ def within_tolerances(task: Task, arm: Arm, before: Arm, watch: Watch) -> Arm:
         before: The same as it was found for a part of the targets: maybe in another valley of the worst miss.
         watch: As for `least_worst`.
     """
-    if np.mean(relative_misses(task, arm) ** 2) > np.mean(task.weights):  # as for `may_be_met`
-        return arm
-    by_worst = task.by_worst_miss
-    if relative_misses(by_worst, arm).max() <= 1.0:
-        return arm
-    squares = Shapes.of(arm)
+    by_worst, squares = task.by_worst_miss, Shapes.of(arm)
     for start in (arm, before):
         worst = Shapes.of(least_worst(by_worst, start, watch))
         for share in _ON_THE_WAY:
