@@ -90,7 +90,7 @@ class Search:
     def run(self, most: int | None = None) -> None:
         """Polish start points until enough is found, or the time is up; if `most`, quick ones, so many."""
         self._run(most)
-        if self._may_be_met(self.polishing.designs) and not self._watch.is_up():
+        if self._may_be_met(self.polishing.designs):
             search = self._by_worst()
             search.run(most)
             self.starts += search.starts
@@ -110,8 +110,10 @@ class Search:
         return search
 
     def _may_be_met(self, designs: Sequence[Design]) -> bool:
-        """Whether a target is missed that may be reached if others are missed by more."""
-        return not self.polishing.found and not self._task.is_partial and may_be_met(self._task, designs)
+        """Whether a target is missed that may be reached if others are missed by more, and there is time."""
+        if self.polishing.found or self._task.is_partial or self._watch.is_up():
+            return False
+        return may_be_met(self._task, designs)
 
     def _run(self, most: int | None) -> None:
         usual = _STARTS_WHEN_IMPOSSIBLE if self._is_impossible() else _STARTS_AT_MOST
