@@ -9,6 +9,7 @@ from package_files import FILES, FOLDERS, MODULES, PACKAGE, TESTS
 
 # Each folder is a room, and its `__init__` the door; beside it stand the rooms it may enter. What lies in no
 # room everything may use.
+_SEARCH = {"robot", "synthesis.check", "synthesis.shapes", "synthesis.starts", "synthesis.wanted", "task"}
 ROOMS = {
     "cli": {"export", "guide", "live", "measurement", "solution_file", "sweep", "synthesis", "task"},
     "live": {"export", "guide", "live.streams", "measurement", "robot", "synthesis"},
@@ -34,38 +35,11 @@ ROOMS = {
     "export.sheet": {"geometry", "guide", "robot", "synthesis", "task"},
     "guide.loop": {"measurement", "robot", "synthesis", "task"},
     "guide": {"robot", "synthesis", "task"},
-    "synthesis": {
-        "geometry",
-        "robot",
-        "synthesis.bound",
-        "synthesis.check",
-        "synthesis.nlp",
-        "synthesis.searching",
-        "synthesis.shapes",
-        "synthesis.solution",
-        "synthesis.starts",
-        "synthesis.wanted",
-        "synthesis.whole",
-        "task",
-    },
-    "synthesis.whole": {
-        "robot",
-        "synthesis.check",
-        "synthesis.searching",
-        "synthesis.shapes",
-        "synthesis.starts",
-        "synthesis.wanted",
-        "task",
-    },
-    "synthesis.searching": {
-        "robot",
-        "synthesis.check",
-        "synthesis.nlp",
-        "synthesis.shapes",
-        "synthesis.starts",
-        "synthesis.wanted",
-        "task",
-    },
+    "synthesis": _SEARCH
+    | {"geometry", "synthesis.bound", "synthesis.nlp", "synthesis.searching"}
+    | {"synthesis.solution", "synthesis.whole"},
+    "synthesis.whole": _SEARCH | {"synthesis.searching"},
+    "synthesis.searching": _SEARCH | {"synthesis.nlp"},
     "synthesis.solution": {
         "robot",
         "synthesis.bound",

@@ -154,7 +154,7 @@ def trial(guide, task, designs, operator, markers, calibrated, corrections, conf
 
 def of_task(arguments):
     """Return the trials of all operators on one task, by guide."""
-    seed, count, operators, marker_set, corrections, confidence, guides = arguments
+    seed, count, operators, marker_set, limits, guides = arguments
     task, _ = planted_task(seed, count)
     task = replace(task, targets=tuple(replace(each, tolerance=TOLERANCE) for each in task.targets))
     solution = solve(task)
@@ -165,16 +165,7 @@ def of_task(arguments):
     start = time.perf_counter()
     trials = {
         guide: [
-            trial(
-                guide,
-                task,
-                solution.designs,
-                Operator(1000 * seed + k),
-                markers,
-                calibrated,
-                corrections,
-                confidence,
-            )
+            trial(guide, task, solution.designs, Operator(1000 * seed + k), markers, calibrated, *limits)
             for k in range(operators)
         ]
         for guide in guides
@@ -217,8 +208,7 @@ def main() -> None:
             counts[k % len(counts)],
             arguments.operators,
             arguments.markers,
-            arguments.corrections,
-            arguments.confidence,
+            (arguments.corrections, arguments.confidence),
             guides,
         )
         for k in range(arguments.tasks)

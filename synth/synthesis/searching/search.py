@@ -91,23 +91,18 @@ class Search:
         """Polish start points until enough is found, or the time is up; if `most`, quick ones, so many."""
         self._run(most)
         if self._may_be_met(self.polishing.designs):
-            search = self._by_worst()
+            polishing = self.polishing.by_worst
+            search = Search(
+                polishing.task,
+                self._seed,
+                self._watch,
+                self._is_impossible,
+                self._alternatives,
+                sees_all=self._sees_all,
+            )
+            search.polishing = polishing  # what it finds stands with the other shapes
             search.run(most)
             self.starts += search.starts
-
-    def _by_worst(self) -> Search:
-        """Return a search for the least worst miss over its tolerance, which keeps its shapes with these."""
-        polishing = self.polishing.by_worst
-        search = Search(
-            polishing.task,
-            self._seed,
-            self._watch,
-            self._is_impossible,
-            self._alternatives,
-            sees_all=self._sees_all,
-        )
-        search.polishing = polishing
-        return search
 
     def _may_be_met(self, designs: Sequence[Design]) -> bool:
         """Whether a target is missed that may be reached if others are missed by more, and there is time."""
@@ -119,7 +114,9 @@ class Search:
         usual = _STARTS_WHEN_IMPOSSIBLE if self._is_impossible() else _STARTS_AT_MOST
         at_most = self.starts + (most or usual)
         no_better = 0
-        for start in self._start_points(quick=most is not None or self._is_impossible()):
+        quick = most is not None or self._is_impossible()
+        starts = start_points(self._task, self._seed, quick=quick, watch=self._watch)
+        for start in _watched(starts, self._watch):
             if self._watch.is_up():
                 # A start that was not polished is better than nothing.
                 if not self.polishing.designs:
@@ -148,22 +145,21 @@ class Search:
                 self._since_found += 1
                 return
         self.polishing.polish(start)
-        if self._led_astray(start) and self.polishing.keep(start.arm, start.joints).verification.possible:
+        # Its long first steps may have led away from a start that is nearly an answer.
+        squares = self._task.objective is Objective.LEAST_SQUARES
+        astray = squares and not self.polishing.found and self._may_be_better(start)
+        if astray and self.polishing.keep(start.arm, start.joints).verification.possible:
             self.polishing.polish(start, near=True)
-        if self._lost(start):
+        if not self.polishing.found and _passes_all(self._task, start):  # and polishing lost them
             if self._task.objective is Objective.MINIMAX:  # the sum of squares is the smoother one
                 self.polishing.by_squares.polish(start, near=True)
             if not self.polishing.found:  # a start that is an answer is better than what polishing made of it
                 self.polishing.keep(start.arm, start.joints)
-        self._level()
-        self.starts += 1
-        self._since_found += self.polishing.found
-
-    def _level(self) -> None:
-        """Polish the worst miss of the last shape, if a target is missed that may be reached."""
         last = self.polishing.designs[-1:]
         if self._may_be_met(last):
             self.polishing.by_worst.polish(Start(last[0].arm, last[0].verification.joints), near=True)
+        self.starts += 1
+        self._since_found += self.polishing.found
 
     def _wished_for(self) -> bool:
         """Look for shapes that a person would rather have than the first one; whether there are any."""
@@ -187,37 +183,36 @@ class Search:
         return found > 0
 
     def _may_be_better(self, start: Start) -> bool:
-        """Whether a start may lead to a better shape than the best: not if its valley is above that.
+        """Whether a start may lead to a better shape than the best."""
+        designs = self.polishing.designs
+        certain = not designs or self.polishing.found or self._is_impossible()
+        return certain or _promises_less(self._task, start, designs)
 
-        For targets far out of reach the refinement, which takes misses for small, does not say how low it is.
-        """
-        if not self.polishing.designs or self.polishing.found or self._is_impossible():
-            return True
-        least = start.cost / float(self._task.tolerances.min()) ** 2  # in the mean, so also of the worst
-        if self._task.objective is Objective.LEAST_SQUARES:
-            least *= len(self._task.targets)
-        best = min(objective(self._task, design) for design in self.polishing.designs)
-        return least < (1.0 - _GAIN) * best
 
-    def _led_astray(self, start: Start) -> bool:
-        """Whether polishing may have led away from a start that is nearly an answer, by long first steps."""
-        sum_of_squares = self._task.objective is Objective.LEAST_SQUARES
-        return sum_of_squares and not self.polishing.found and self._may_be_better(start)
+def _watched(starts: Iterator[Start], watch: Watch) -> Iterator[Start]:
+    """Yield start points; the time that looking for them takes is that of the screening."""
+    while True:
+        with watch.on("screening"):
+            start = next(starts, None)
+        if start is None:
+            return
+        yield start
 
-    def _lost(self, start: Start) -> bool:
-        """Whether a start passes through all targets, whatever limits it breaks, and polishing lost them."""
-        if self.polishing.found:
-            return False
-        return bool((start.misses(self._task) <= self._task.tolerances).all())
 
-    def _start_points(self, *, quick: bool) -> Iterator[Start]:
-        candidates = start_points(self._task, self._seed, quick=quick, watch=self._watch)
-        while True:
-            with self._watch.on("screening"):
-                start = next(candidates, None)
-            if start is None:
-                return
-            yield start
+def _promises_less(task: Task, start: Start, designs: Sequence[Design]) -> bool:
+    """Return whether the valley of a start is not above the best of some shapes.
+
+    For targets far out of reach the refinement, which takes misses for small, does not say how low it is.
+    """
+    least = start.cost / float(task.tolerances.min()) ** 2  # in the mean, so also of the worst
+    if task.objective is Objective.LEAST_SQUARES:
+        least *= len(task.targets)
+    return least < (1.0 - _GAIN) * min(objective(task, design) for design in designs)
+
+
+def _passes_all(task: Task, start: Start) -> bool:
+    """Return whether a start passes through all targets, whatever limits it breaks."""
+    return bool((start.misses(task) <= task.tolerances).all())
 
 
 def _promises_all(task: Task, start: Start) -> bool:
