@@ -107,7 +107,7 @@ def follow(x, k, pose, tube):
         uz, vz, tz = a * uz + b * vz - sx * tz, b * uz + c * vz - sy * tz, sx * uz + sy * vz + cos * tz
     pose[0], pose[1], pose[2] = px + k[7] * ux, py + k[7] * uy, pz + k[7] * uz
     pose[3], pose[4], pose[5], pose[6], pose[7], pose[8] = vx, vy, vz, tx, ty, tz
-    pose[9], pose[10], pose[11] = lowest - k[14], pz - k[5] * uz, pz + (k[6] - k[5]) * uz
+    pose[9], pose[10], pose[11] = lowest - k[TUBE_RADIUS], pz - k[5] * uz, pz + (k[6] - k[5]) * uz
     nearest = np.inf
     for i in range(TUBE):
         for j in range(i + 1, TUBE):
@@ -118,7 +118,7 @@ def follow(x, k, pose, tube):
                     + (tube[i, 1] - tube[j, 1]) ** 2
                     + (tube[i, 2] - tube[j, 2]) ** 2,
                 )
-    pose[12] = max(2.0 * k[14] + _BETWEEN - math.sqrt(nearest), 0.0)
+    pose[12] = max(2.0 * k[TUBE_RADIUS] + _BETWEEN - math.sqrt(nearest), 0.0)
 
 
 @njit(cache=True)
@@ -146,7 +146,7 @@ def rod_depth(pose, k, tube, theta2):
             along = min(max((dx * rx + dy * ry + dz * rz) / length, from_joint), length) / length
             dx, dy, dz = dx - along * rx, dy - along * ry, dz - along * rz
             nearest = min(nearest, dx * dx + dy * dy + dz * dz)
-    return max(k[14] + k[15] + _BETWEEN - math.sqrt(nearest), 0.0)
+    return max(k[TUBE_RADIUS] + k[15] + _BETWEEN - math.sqrt(nearest), 0.0)
 
 
 @njit(cache=True)

@@ -137,7 +137,7 @@ class Search:
                 return
 
     def polish(self, start: Start) -> None:
-        """Polish one start point; where that leads astray, again with shorter steps or by squares."""
+        """Polish one start point; where it leads astray, again: nearer, by squares, by the worst miss."""
         if not self.polishing.found and _promises_all(self._task, start):  # else polished ones are gentler
             found = self.polishing.keep(start.arm, start.joints).verification.found
             if found and self._sees_all and start.relative_miss(self._task) <= _NEXT_TO_NOTHING:

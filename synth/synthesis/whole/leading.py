@@ -87,7 +87,7 @@ def led_to_binding(whole: WholeTask, seed: int, watch: Watch) -> WholeTask:
     for number in range(LED_BETWEEN):
         if best.designs[0].verification.found or watch.is_up():
             break
-        chosen = binding(task, arm, chosen)
+        chosen = _binding(task, arm, chosen)
         part = task.asking_for(task.table.take(chosen))
         search = Search(part, seed + number, watch, lambda: False, alternatives=0)
         with watch.on("solving"):
@@ -103,7 +103,7 @@ def led_to_binding(whole: WholeTask, seed: int, watch: Watch) -> WholeTask:
     return best
 
 
-def binding(task: Task, arm: Arm, chosen: NDArray[np.intp] | None) -> NDArray[np.intp]:
+def _binding(task: Task, arm: Arm, chosen: NDArray[np.intp] | None) -> NDArray[np.intp]:
     """Return which targets say most of the worst miss: those that an arm misses most.
 
     Args:
